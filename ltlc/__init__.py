@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from ltlc.interfaces.api.run import run, run_each
     from ltlc.semantics.verdicts import Verdict
 
-__version__ = "0.1.0"
+__version__ = "1.0.0"
 __all__ = [
     "Budget",
     "Build",

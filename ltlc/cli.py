@@ -13,7 +13,7 @@ import traceback
 from collections.abc import Sequence
 from contextlib import suppress
 
-from ltlc import __version__
+from ltlc.base.revision import version_text
 from ltlc.interfaces.commands.parser import COMMANDS, module_of, parser_of
 
 TRACEBACK = "LTLC_TRACEBACK"
@@ -43,7 +43,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print("ltlc: out of memory", file=sys.stderr)
         return 2
     except Exception as error:
-        _report_bug(error)
+        if not _report_missing(error):
+            _report_bug(error)
         return 2
 
 
@@ -60,11 +61,24 @@ def _open_closed_streams() -> None:
             setattr(sys, name, open(os.devnull, mode, encoding="utf-8"))  # noqa: SIM115  it stays open
 
 
+def _report_missing(error: Exception) -> bool:
+    """Name the command that brings a library which is not installed; False of any other error."""
+    if not isinstance(error, ModuleNotFoundError):
+        return False
+    from ltlc.base.libraries import missing_library
+    from ltlc.interfaces.commands.common import report
+
+    found = missing_library(error, "ltlc")
+    if found is not None:
+        report([found])
+    return found is not None
+
+
 def _report_bug(error: Exception) -> None:
     """Say what went wrong in ltlc itself, and what its authors need to know; where, only if that is asked for."""
     what = f"{type(error).__name__}: {error}".partition("\n")[0]
     print(
-        f"ltlc: this is a bug in ltlc {__version__}: {what}\n"
+        f"ltlc: this is a bug in ltlc {version_text()}: {what}\n"
         f"Please report it with the command, its files and what `{TRACEBACK}=1` makes it print.",
         file=sys.stderr,
     )

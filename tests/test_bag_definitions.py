@@ -23,11 +23,10 @@ from ltlc.base.limits import Budget
 from ltlc.base.source import Source
 from ltlc.cli import main
 from ltlc.compiler import Compiled
-from ltlc.inputs.messages.folders import from_rosbags
+from ltlc.inputs.messages.distributions import from_rosbags
+from ltlc.inputs.messages.texts import defined
 from ltlc.inputs.recordings import open_recording
 from ltlc.inputs.recordings.bags.known import message_types
-from ltlc.inputs.recordings.bags.messages import Topic
-from ltlc.inputs.recordings.bags.texts import defined_by
 from ltlc.interfaces.api.prepare import prepare
 from ltlc.monitoring.judging.run import RunReport, run
 from ltlc.runtime.times import SECOND
@@ -401,13 +400,13 @@ def test_definitions_as_recordings_have_them_say_what_rosbags_says(store: Stores
         text, _ = known.generate_msgdef(name, ros_version=form)
         if not text.strip():
             continue  # what has no field is taken for what is not defined
-        found = defined_by(Topic(name, "cdr", f"ros{form}msg", text, None))
+        found = defined(name, f"ros{form}msg", text)
         assert found[name] == from_rosbags(definition), name
 
 
 def test_constants_that_are_strings_keep_what_is_written() -> None:
     text = 'string A="x # y"\nstring B=un quoted  # kept in ROS 1\nuint8 C=0x1F # hex\nbool D=true\nfloat32 E=-1.5\n'
-    message = defined_by(Topic("a/msg/B", "cdr", "ros1msg", f"{text}uint8 F=many\nint8 x\n", None))["a/msg/B"]
+    message = defined("a/msg/B", "ros1msg", f"{text}uint8 F=many\nint8 x\n")["a/msg/B"]
     assert message.constants == {"A": "x # y", "B": "un quoted  # kept in ROS 1", "C": 31.0, "D": True, "E": -1.5}
     assert list(message.fields) == ["x"]
 

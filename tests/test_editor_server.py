@@ -364,4 +364,5 @@ def test_without_pygls_the_command_says_how_to_get_it(
     monkeypatch.setitem(sys.modules, "lsprotocol", None)  # which comes with pygls
     monkeypatch.delitem(sys.modules, "ltlc.interfaces.editor.server", raising=False)
     assert main(["lsp"]) == 2
-    assert capsys.readouterr().err == "ltlc: this needs the extra `editor`: `pip install 'ltlc[editor]'`\n"
+    assert "LTL808" in (err := capsys.readouterr().err)
+    assert "run `pip install 'ltlc[editor]'`" in err

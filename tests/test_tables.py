@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from backports import zstd
+import zstandard
 from hypothesis import example, given
 from hypothesis import strategies as st
 from stepping import from_text
@@ -234,7 +234,9 @@ def test_where_a_file_is_cut_into_pieces_changes_nothing(
         assert both_ways(path, signals()) == (by_rows, by_rows)
 
 
-@pytest.mark.parametrize(("end", "compress"), [(".gz", gzip.compress), (".zst", zstd.compress), (".GZ", gzip.compress)])
+@pytest.mark.parametrize(
+    ("end", "compress"), [(".gz", gzip.compress), (".zst", zstandard.compress), (".GZ", gzip.compress)]
+)
 @pytest.mark.parametrize(
     ("name", "content"), [("run.csv", b"time,v\n0,1\n1,2\n"), ("run.jsonl", b'{"time": 0, "v": 1}')]
 )
@@ -248,7 +250,7 @@ def test_text_may_be_compressed(
     assert rows
 
 
-@pytest.mark.parametrize(("end", "compress"), [(".gz", gzip.compress), (".zst", zstd.compress)])
+@pytest.mark.parametrize(("end", "compress"), [(".gz", gzip.compress), (".zst", zstandard.compress)])
 def test_a_compressed_file_that_is_cut_off_is_read_up_to_there(
     tmp_path: Path, end: str, compress: Callable[[bytes], bytes]
 ) -> None:

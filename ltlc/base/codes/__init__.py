@@ -145,6 +145,7 @@ CODES: dict[str, Code] = {
     "LTL805": Code("unknown-column", "No property reads this column of the recording", NOTE),
     "LTL806": Code("missing-column", "The recording has no values of a signal", WARNING),
     "LTL807": Code("recording-format", "An unsupported recording format"),
+    "LTL808": Code("missing-library", "A library is not installed"),
     "LTL820": Code("damaged-table", "The recording is damaged"),
     "LTL830": Code("no-recordings", "A folder or a pattern contains no recording"),
     "LTL831": Code("storage", "A storage, or a recording on it, cannot be read"),

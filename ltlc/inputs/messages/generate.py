@@ -11,7 +11,8 @@ from typing import Any
 from rosbags.typesys import Stores, get_typestore  # noqa: TID251
 
 from ltlc.base.files import compact_json, write_text
-from ltlc.inputs.messages.folders import from_rosbags, interface
+from ltlc.inputs.messages.distributions import from_rosbags
+from ltlc.inputs.messages.texts import interface
 
 BESIDE = {
     "gazebo_msgs/msg/ModelStates": "string[] name\ngeometry_msgs/Pose[] pose\ngeometry_msgs/Twist[] twist\n",

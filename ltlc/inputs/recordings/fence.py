@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from ltlc.base.libraries import missing_library
 from ltlc.inputs.recordings.rows import RecordingError, failure
 
 HELP = "if other programs can read it, please report this to the authors of ltlc, with the file"
@@ -22,6 +23,11 @@ def fenced(path: Path, code: str) -> Iterator[None]:
         yield
     except RecordingError:
         raise
+    except ModuleNotFoundError as error:
+        found = missing_library(error, str(path))
+        if found is None:
+            raise
+        raise RecordingError(found) from None
     except MemoryError:
         raise failure(code, path, f"`{path}` needs more memory than is available") from None
     except OSError as error:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ltlc.base.libraries import is_installed
 from ltlc.inputs.recordings.arrow import OddError, Times, from_text, samples, there, whole
 from ltlc.inputs.recordings.blocks import Block, Places, Samples, packed
 from ltlc.inputs.recordings.rows import Column, NotAValueError
@@ -39,7 +40,7 @@ class Plain:
 
     def block(self, piece: bytes) -> Block | None:
         """The rows of `piece`; None if something in it is odd. May be called in several threads."""
-        if len(piece) < WORTH or not _is_regular(piece):
+        if not is_worth_it(piece) or not _is_regular(piece):
             return None
         table = self._parsed(piece)
         if table is None or not len(table) or table[self._time].null_count or self._has_odd_nan(table, piece):
@@ -81,6 +82,11 @@ class Plain:
         if _is_double(wanted):
             return samples(column, wanted)
         return _parsed_once(*there(column), wanted, self._parsers[head])
+
+
+def is_worth_it(piece: bytes) -> bool:
+    """Whether the library reads `piece` sooner: it is installed, and there is much to read."""
+    return len(piece) >= WORTH and is_installed("pyarrow")
 
 
 def block_of(

@@ -14,11 +14,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ltlc.inputs.recordings import plain
 from ltlc.inputs.recordings.arrow import LONG, SHORT, in_nanoseconds, samples
 from ltlc.inputs.recordings.blocks import Block, Samples
 from ltlc.inputs.recordings.heads import MOST_HEADS
-from ltlc.inputs.recordings.plain import block_of, is_usual
+from ltlc.inputs.recordings.plain import block_of, is_usual, is_worth_it
 from ltlc.inputs.recordings.rows import Column
 from ltlc.specification.expressions import ValueType
 
@@ -42,7 +41,7 @@ class PlainJson:
 
     def block(self, piece: bytes) -> Block | None:
         """The rows of `piece`; None if something in it is odd. May be called in several threads."""
-        if len(piece) < plain.WORTH or not _is_regular(piece) or _TIME_IN_QUOTES.search(piece):
+        if not is_worth_it(piece) or not _is_regular(piece) or _TIME_IN_QUOTES.search(piece):
             return None
         table = _parsed(piece, self._schema(self._digits))
         if table is None and self._digits == SHORT:
@@ -65,7 +64,7 @@ class PlainJson:
 
 def keys(piece: bytes) -> list[str] | None:
     """The keys of the objects in `piece`, or more than any table has; None if something in it is odd."""
-    if len(piece) < plain.WORTH or not _is_regular(piece):
+    if not is_worth_it(piece) or not _is_regular(piece):
         return None
     found: dict[str, None] = {}
     for part in _narrow(piece):

@@ -16,6 +16,9 @@ SIZE = 3 << 20
 LONGEST = 1 << 23
 """No line has more bytes: what decompresses to one would fill the memory."""
 
+AT_ONCE = 1 << 16
+"""How many are asked for at a time: where a compressed file is cut off, what was to come with the cut is lost."""
+
 SHORT = 1 << 12
 """How many one has of which the first line is wanted."""
 
@@ -81,7 +84,7 @@ class Text:
         parts = [self._rest]
         while size > 0 and not self._is_read:
             try:
-                read = self._file.read1(size)
+                read = self._file.read1(min(size, AT_ONCE))
             except Exception as error:
                 self._damage, read = _unreadable(self._path, error), b""
             self._is_read = not read
@@ -131,9 +134,9 @@ def _file(path: Path) -> Any:
         case ".gz":
             return gzip.open(path)
         case ".zst":
-            from backports import zstd
+            import pyarrow  # zstandard's reader does not notice that a file is cut off
 
-            return zstd.open(path)
+            return pyarrow.CompressedInputStream(str(path), "zstd")
         case _:
             return path.open("rb")
 

@@ -6,7 +6,7 @@ import argparse
 
 from ltlc.automata import Budget
 from ltlc.interfaces.commands import arguments
-from ltlc.interfaces.commands.common import FINDING, OK, unusable
+from ltlc.interfaces.commands.common import FINDING, OK
 from ltlc.semantics.encodings import ENCODINGS
 
 
@@ -21,11 +21,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Serve one editor until it ends."""
-    try:
-        from ltlc.interfaces.editor.server import serve
-    except ModuleNotFoundError as error:
-        if error.name not in ("lsprotocol", "pygls"):
-            raise
-        return unusable("this needs the extra `editor`: `pip install 'ltlc[editor]'`")
+    from ltlc.interfaces.editor.server import serve  # needs an extra
+
     paths = [str(path) for path in options.msg_path]
     return OK if serve(paths, ENCODINGS[options.encoding], Budget(*options.budget)) else FINDING

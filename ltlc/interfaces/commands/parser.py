@@ -11,7 +11,7 @@ import importlib
 from collections.abc import Collection
 from typing import Any
 
-from ltlc import __version__
+from ltlc.base.revision import version_text
 
 COMMANDS = {
     "new": "write a specification to start with, for the topics of a bag or of `ros2 topic list -t`",
@@ -39,7 +39,7 @@ def parser_of(called: Collection[str]) -> argparse.ArgumentParser:
         epilog="Exit codes: 0 all well; 1 a finding; 2 unusable input or usage, or a bug; "
         "3 nothing violated, but something still open, not started or not decided.",
     )
-    parser.add_argument("--version", action="version", version=f"ltlc {__version__}")
+    parser.add_argument("--version", action=_Version, nargs=0, help="show the version and the commit, and exit")
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
     for name, text in COMMANDS.items():
         command = commands.add_parser(name, help=text, description=text)
@@ -47,6 +47,14 @@ def parser_of(called: Collection[str]) -> argparse.ArgumentParser:
             module_of(name).add_arguments(command)
             command.add_argument("-q", "--quiet", action="store_true", help=QUIET)
     return parser
+
+
+class _Version(argparse.Action):
+    """Finds the commit when it is asked for, which takes a while."""
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
+        print(f"ltlc {version_text()}")
+        parser.exit()
 
 
 def module_of(command: str) -> Any:

@@ -72,6 +72,8 @@ def run(options: argparse.Namespace) -> int:
     """Judge the recordings, and show the report in the format asked for."""
     from ltlc.monitoring.campaigns.places import find, is_one
 
+    if options.output:
+        from ltlc.monitoring.judging import output  # noqa: F401  what it needs may not be installed
     outputs = (options.report, options.output, options.summary)
     named = [each for each in options.recordings if is_one([each])]
     if twice := overwritten(outputs, [options.specification, *named]):

@@ -11,6 +11,7 @@ from typing import Any
 from ltlc import __version__
 from ltlc.base.codes import diagnostic
 from ltlc.base.diagnostics import Diagnostic
+from ltlc.base.libraries import command
 from ltlc.base.source import Source
 from ltlc.monitoring.campaigns.campaign import Failure, Workers, judge_beside_others
 from ltlc.monitoring.campaigns.outcomes import Outcome
@@ -49,7 +50,7 @@ def on_engine(address: str, jobs: int | None) -> Iterator[Workers]:
         from distributed import Client, LocalCluster
     except ImportError:
         message = "`--engine` needs Dask, which is not installed"
-        raise EngineError(address, message, "pip install 'ltlc[campaigns]'") from None
+        raise EngineError(address, message, command("campaigns")) from None
     for name in [each for each in logging.root.manager.loggerDict if each.startswith("distributed")]:
         logging.getLogger(name).setLevel(logging.CRITICAL)  # what is lost is told by ourselves
     with dask.config.set(_SETTINGS), ExitStack() as started:

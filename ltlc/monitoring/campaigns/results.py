@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Any, Self
 from ltlc import __version__
 from ltlc.base.codes import diagnostic
 from ltlc.base.diagnostics import Diagnostic
+from ltlc.base.libraries import command
 from ltlc.base.source import Source
 from ltlc.monitoring.campaigns.journal import InUseError, Journal
 from ltlc.monitoring.campaigns.outcomes import Outcome
@@ -215,4 +216,4 @@ def _refuse_without_pyarrow(path: Path) -> None:
         import pyarrow.parquet  # noqa: F401
     except ImportError:
         message = "a table of results is written by pyarrow, which is not installed"
-        raise ResultsError(path, message, "pip install 'ltlc[campaigns]'") from None
+        raise ResultsError(path, message, command("recordings")) from None

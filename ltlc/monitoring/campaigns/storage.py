@@ -12,6 +12,7 @@ from typing import Any
 
 from ltlc.base.codes import diagnostic
 from ltlc.base.diagnostics import Diagnostic
+from ltlc.base.libraries import command
 from ltlc.base.source import Source
 from ltlc.inputs.recordings import is_recording
 from ltlc.monitoring.campaigns.places import Location, is_address
@@ -77,7 +78,7 @@ def _opened(address: str) -> tuple[Any, str]:
         import fsspec
     except ImportError:
         message = f"`{address}` needs fsspec, which is not installed"
-        raise StorageError(address, message, "pip install 'ltlc[campaigns]'") from None
+        raise StorageError(address, message, command("campaigns")) from None
     try:
         system, path = fsspec.core.url_to_fs(address)
     except ImportError as error:

@@ -18,6 +18,9 @@ import io
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
+from mcap.writer import Writer
+from rosbags.typesys import Stores, get_typestore  # noqa: TID251
+
 from ltlc import __version__
 from ltlc.inputs.recordings.trails import Trail
 from ltlc.monitoring.judging.run import RunReport
@@ -123,9 +126,6 @@ def _ends(session: Session) -> tuple[Nanoseconds, Nanoseconds]:
 
 def _written(messages: list[_Message]) -> bytes:
     """`messages`, in CDR, with the definitions of their types."""
-    from mcap.writer import Writer
-    from rosbags.typesys import Stores, get_typestore  # noqa: TID251
-
     store = get_typestore(Stores.ROS2_JAZZY)
     file = io.BytesIO()
     writer = Writer(file)

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 from ltlc.base.nearest import did_you_mean
 from ltlc.inputs.messages.definitions import JAZZY, STRINGS, FieldType, Message, MessageTypes, shipped
+from ltlc.inputs.messages.texts import defined
 from ltlc.inputs.recordings.bags.messages import LARGEST, Topic
 from ltlc.inputs.recordings.bags.scalars import SCALARS
-from ltlc.inputs.recordings.bags.texts import defined_by
 from ltlc.specification.expressions import Bytes, Each, Field, Match, Parallel, PathStep, Signal, ValueType
 from ltlc.specification.wire import PRIMITIVES
 
@@ -76,7 +76,7 @@ def types_of(topic: Topic, others: Sequence[Layer]) -> Defined:
     Raises UnknownTypeError and NonsenseError.
     """
     try:
-        own = defined_by(topic)
+        own = defined(topic.type, topic.form, topic.definition)
     except ValueError as error:
         help = "record it again, or give its definition with `--msg-path DIR` and a recording without one"
         raise UnknownTypeError(f"whose definition in the recording cannot be read: {error}", help) from None

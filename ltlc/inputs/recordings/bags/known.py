@@ -6,11 +6,12 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 
 from ltlc.inputs.messages.definitions import BadPath, Message, MessageTypes, shipped
+from ltlc.inputs.messages.folders import files_below, read_folder
+from ltlc.inputs.messages.texts import defined
 from ltlc.inputs.recordings import open_recording
 from ltlc.inputs.recordings.bags import BagRecording
 from ltlc.inputs.recordings.bags.folders import is_bag
 from ltlc.inputs.recordings.bags.messages import Topic
-from ltlc.inputs.recordings.bags.texts import defined_by
 from ltlc.inputs.recordings.rows import RecordingError
 
 
@@ -45,8 +46,6 @@ def given_messages(paths: Sequence[str]) -> tuple[dict[str, Message], list[BadPa
 
 
 def _read(path: Path) -> tuple[dict[str, Message], list[BadPath]]:
-    from ltlc.inputs.messages.folders import files_below, read_folder  # brings rosbags along
-
     return _read_bag(path) if is_bag(path) and not files_below(path) else read_folder(path)
 
 
@@ -55,7 +54,7 @@ def messages_in(topics: Iterable[Topic]) -> dict[str, Message]:
     found: dict[str, Message] = {}
     for topic in topics:
         try:
-            found = defined_by(topic) | found
+            found = defined(topic.type, topic.form, topic.definition) | found
         except ValueError:
             continue
     return {name: found[name] for name in _finite(found)}

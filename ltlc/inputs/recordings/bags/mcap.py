@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ltlc.inputs.messages.texts import full_name
 from ltlc.inputs.recordings.ahead import each_ahead
 from ltlc.inputs.recordings.bags.mcap_chunks import Chunks
 from ltlc.inputs.recordings.bags.mcap_records import (
@@ -26,7 +27,6 @@ from ltlc.inputs.recordings.bags.mcap_records import (
 )
 from ltlc.inputs.recordings.bags.mcap_summary import summary
 from ltlc.inputs.recordings.bags.messages import LATEST, Batch, Room, Topic, batch_of, span_of
-from ltlc.inputs.recordings.bags.texts import full_name
 from ltlc.inputs.recordings.rows import RecordingError, failure
 from ltlc.semantics.durations import Nanoseconds
 

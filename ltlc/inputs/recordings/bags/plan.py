@@ -10,6 +10,7 @@ import numpy as np
 
 from ltlc.base.nearest import did_you_mean
 from ltlc.inputs.messages.definitions import JAZZY, FieldType, MessageTypes
+from ltlc.inputs.messages.texts import full_name
 from ltlc.inputs.recordings.bags import cdr
 from ltlc.inputs.recordings.bags.choices import Path
 from ltlc.inputs.recordings.bags.compressed import unpacked
@@ -26,7 +27,6 @@ from ltlc.inputs.recordings.bags.definitions import (
 from ltlc.inputs.recordings.bags.merging import Rows
 from ltlc.inputs.recordings.bags.messages import Messages, Topic
 from ltlc.inputs.recordings.bags.scalars import MisfitError
-from ltlc.inputs.recordings.bags.texts import full_name
 from ltlc.inputs.recordings.blocks import Places, Ragged, Samples, kind_of
 from ltlc.inputs.recordings.reading import ReadOptions, Stamp
 from ltlc.inputs.recordings.rows import Column

@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
+from ltlc.inputs.messages.texts import full_name
 from ltlc.inputs.recordings.bags.messages import LARGEST, LATEST, Batch, Messages, Room, Topic, span_of
-from ltlc.inputs.recordings.bags.texts import full_name
 from ltlc.inputs.recordings.rows import RecordingError, failure
 from ltlc.semantics.durations import Nanoseconds
 

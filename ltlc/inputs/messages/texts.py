@@ -1,4 +1,4 @@
-"""Definitions of messages as recordings carry them, as text: in the form of ROS 2, of ROS 1, or as IDL."""
+"""Definitions of messages as text, as packages and recordings have them: in the form of ROS 2, of ROS 1, or as IDL."""
 
 from __future__ import annotations
 
@@ -6,8 +6,13 @@ import re
 from functools import lru_cache
 
 from ltlc.inputs.messages.definitions import PLACEHOLDER, STRINGS, Constant, FieldType, Message
-from ltlc.inputs.recordings.bags.messages import Topic
 from ltlc.specification.wire import PRIMITIVES, double_or_integer
+
+PARTS = {".msg": ("",), ".srv": ("_Request", "_Response"), ".action": ("_Goal", "_Result", "_Feedback")}
+"""What the sections of a file define, by the end of its name; lines of three dashes stand between them."""
+
+_UUID, _TIME = FieldType("unique_identifier_msgs/msg/UUID"), FieldType("builtin_interfaces/msg/Time")
+_EVENT_INFO = FieldType("service_msgs/msg/ServiceEventInfo")
 
 _SEPARATOR = re.compile(r"^={20,}\s*$", re.MULTILINE)
 _FIELD = re.compile(r"\s*([A-Za-z][\w/]*)(?:<=\d+)?(\[(?:<=)?\d*\])?\s+([A-Za-z]\w*)\s*(=?)")
@@ -34,13 +39,9 @@ def full_name(name: str) -> str:
     return f"{package}/msg/{short}" if slash and "/" not in short else name
 
 
-def defined_by(topic: Topic) -> dict[str, Message]:
-    """What the text of a topic's definition defines, nothing without one. Raises ValueError."""
-    return _defined(topic.type, topic.form, topic.definition)
-
-
 @lru_cache(_TEXTS)
-def _defined(type_: str, form: str, text: str) -> dict[str, Message]:
+def defined(type_: str, form: str, text: str) -> dict[str, Message]:
+    """What `text` in this form defines, `type_` and what it contains; nothing without a text. Raises ValueError."""
     match form:
         case "ros2msg" if text.strip():
             return _messages(type_, text)
@@ -63,17 +64,55 @@ def _messages(name: str, text: str) -> dict[str, Message]:
                 raise ValueError("a section does not begin with `MSG:`")
             of, lines = full_name(of.strip()), lines[title + 1 :]
         elif any(line.strip() == "---" for line in lines):
-            found |= _interface(name, section)
+            found |= interface(name.rpartition("_")[0], section)
             continue
         found[of] = _message(lines, of)
     return found
 
 
-def _interface(name: str, text: str) -> dict[str, Message]:
-    """The messages of the service or action that `name` is one of, from its definition."""
-    from ltlc.inputs.messages.folders import interface
+def interface(name: str, text: str) -> dict[str, Message]:
+    """The messages that a message, service or action is made of. Raises ValueError if `text` does not define it.
 
-    return interface(name.rpartition("_")[0], text)
+    `name` is full, as in `std_srvs/srv/SetBool`.
+    """
+    package, kind, short = name.split("/")
+    parts, sections = PARTS[f".{kind}"], _sections(text)
+    if len(sections) != len(parts):
+        raise ValueError(f"has {len(sections)} sections separated by ---, but needs {len(parts)}")
+    found = {
+        f"{name}{part}": _message(section.splitlines(), f"{package}/msg/{short}{part}")
+        for part, section in zip(parts, sections, strict=True)
+    }
+    return found | {"msg": {}, "srv": _event(name), "action": _of_action(name)}[kind]
+
+
+def _sections(text: str) -> list[str]:
+    sections = [""]
+    for line in text.splitlines():
+        if line.rstrip() == "---":
+            sections.append("")
+        else:
+            sections[-1] += f"{line}\n"
+    return sections
+
+
+def _event(service: str) -> dict[str, Message]:
+    """What the introspection of a service publishes on `…/_service_event`."""
+    request, response = FieldType(f"{service}_Request", 0), FieldType(f"{service}_Response", 0)
+    return {f"{service}_Event": Message({"info": _EVENT_INFO, "request": request, "response": response}, {})}
+
+
+def _of_action(action: str) -> dict[str, Message]:
+    """What an action publishes beside its status, and the two services that it is made of."""
+    send, get = f"{action}_SendGoal", f"{action}_GetResult"
+    fields = {
+        f"{action}_FeedbackMessage": {"goal_id": _UUID, "feedback": FieldType(f"{action}_Feedback")},
+        f"{send}_Request": {"goal_id": _UUID, "goal": FieldType(f"{action}_Goal")},
+        f"{send}_Response": {"accepted": FieldType("bool"), "stamp": _TIME},
+        f"{get}_Request": {"goal_id": _UUID},
+        f"{get}_Response": {"status": FieldType("int8"), "result": FieldType(f"{action}_Result")},
+    }
+    return {name: Message(parts, {}) for name, parts in fields.items()} | _event(send) | _event(get)
 
 
 def _message(lines: list[str], name: str) -> Message:
@@ -129,7 +168,7 @@ def _length(written: str | None) -> int | None:
 def _from_idl(text: str) -> dict[str, Message]:
     from rosbags.typesys import TypesysError, get_types_from_idl  # noqa: TID251
 
-    from ltlc.inputs.messages.folders import from_rosbags
+    from ltlc.inputs.messages.distributions import from_rosbags
 
     body = re.sub(r"^={20,}\s*\nIDL: [\w/]+\s*$", "", text, flags=re.MULTILINE)
     try:
