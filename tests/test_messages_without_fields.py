@@ -142,7 +142,7 @@ def test_a_message_without_a_field_has_no_value(used: str) -> None:
 
 def test_the_error_names_what_can_be_asked_and_how_a_value_is_declared() -> None:
     [found] = findings("decl cloud /points PointCloud2\nnever cloud > 2\n")
-    assert str(found.help).startswith("ask for `new cloud` or `age(cloud)`; a value is declared with its path, as in ")
+    assert str(found.help).startswith("use `new cloud` or `age(cloud)`; a value is declared with its path, as in ")
     [found] = findings("decl bump /bumper std_msgs/Empty\nnever bump\n")
     assert str(found.help) == "ask for `new bump` or `age(bump)`"
 
