@@ -1,4 +1,4 @@
-"""For pytest: the fixture `ltlc_monitor`, which tests of simulations step, and which fails them where properties do.
+"""For pytest: the fixture `ltlc_monitor`, which tests of simulations step, and which fails them for a violation.
 
 Each run of pytest imports it in an environment that has ltlc; the compiler is imported where a test asks for it.
 """

@@ -1,4 +1,4 @@
-"""Mends that leave out what makes no difference, a property or a bound, where the text shows plainly what that is."""
+"""Fixes that omit what makes no difference, a property or a bound, where the text shows clearly what that is."""
 
 from __future__ import annotations
 

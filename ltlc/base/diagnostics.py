@@ -1,4 +1,4 @@
-"""What ltlc has to say about a file, as data: collected by the passes, shown by `ltlc.base.render`."""
+"""Diagnostics about a file, as data: collected by the passes, shown by `ltlc.base.render`."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Making mends, so that what a person is advised and what a program can carry out are one; and carrying them out."""
+"""Makes and applies fixes, so that the hint for a person and the edit for a program are the same."""
 
 from __future__ import annotations
 

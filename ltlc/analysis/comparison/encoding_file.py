@@ -1,4 +1,4 @@
-"""Reads encodings that a user has written down: a name, and an equation for each scope keyword.
+"""Reads user-defined encodings: a name, and an equation for each scope keyword.
 
     # what I think the patterns mean
     encoding patient

@@ -1,4 +1,4 @@
-"""Finds the shortest run that tells two formulas apart: a finite one, or an infinite one as a lasso.
+"""Finds the shortest run that distinguishes two formulas: a finite one, or an infinite one as a lasso.
 
 Spot says whether there is such a run; the run that it would give is not the shortest. Here the searches go breadth
 first, with one letter of each kind that the automata tell apart.

@@ -1,4 +1,4 @@
-"""Does a property follow from others, or say the same as one?"""
+"""Does a property follow from others, or is it equivalent to one?"""
 
 from __future__ import annotations
 

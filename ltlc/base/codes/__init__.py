@@ -1,4 +1,4 @@
-"""The registry of diagnostic codes: every diagnostic is made here, so that there is none without a name and a page.
+"""The registry of diagnostic codes: every diagnostic is made here, so that each has a name and a page.
 
 The first digit tells the subject: 0 syntax, 1 names, 2 types and messages, 3 properties, 4 settings, 5 and 6 what
 analyses find, 7 monitors and the gate, 8 recordings, 9 files. `CODE.md` beside this file explains a code.

@@ -1,4 +1,4 @@
-"""`ltlc run` on several recordings: judged side by side, told in their order, kept in a table."""
+"""`ltlc run` on several recordings: judged side by side, reported in their order, kept in a table."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`ltlc check`: what is wrong with specifications before they ever run."""
+"""`ltlc check`: finds mistakes in specifications before they ever run."""
 
 from __future__ import annotations
 

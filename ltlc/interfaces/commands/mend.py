@@ -1,4 +1,4 @@
-"""Mending specifications where one mend is certain: `ltlc check --fix` and `--diff`."""
+"""Fixing specifications where a fix is unambiguous: `ltlc check --fix` and `--diff`."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What can be done about a finding: the mends that it brings, and a comment that says it is known."""
+"""What can be done about a finding: its fixes, and a comment that suppresses it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is answered to the page: findings, verdicts of a run, explanations, encodings side by side; as JSON."""
+"""Answers to the page: findings, verdicts of a run, explanations, encodings side by side; as JSON."""
 
 from __future__ import annotations
 
