@@ -171,7 +171,7 @@ def _after(loop: Loop, edges: Loop) -> Loop:
 
 
 def _accepting(loop: Loop) -> int:
-    """The states from which repeating the loop for ever can be accepted."""
+    """The states from which repeating the loop forever can be accepted."""
     reached = _closure(loop[0])
     recurring = 0
     for state, accepting in enumerate(loop[1]):

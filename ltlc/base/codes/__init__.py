@@ -18,7 +18,7 @@ ERROR, WARNING, NOTE = Severity.ERROR, Severity.WARNING, Severity.NOTE
 
 @dataclass(frozen=True, slots=True)
 class Code:
-    """What a code stands for: its mnemonic, its page's title, how much it weighs, and whether it is told on demand."""
+    """What a code stands for: its mnemonic, its page's title, its weight, and whether it is reported on demand only."""
 
     name: str
     title: str

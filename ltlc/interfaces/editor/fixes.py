@@ -13,7 +13,7 @@ ABOUT_COMMENTS = "LTL691"
 
 
 def fixes(found: Diagnostic) -> Iterator[Fix]:
-    """The mends of `found`, then how to suppress it, where that can be done."""
+    """The fixes of `found`, then how to suppress it, where that can be done."""
     yield from found.fixes
     if found.primary is None or found.code == ABOUT_COMMENTS:
         return
