@@ -166,7 +166,7 @@ CHANGED = {
         STOP,
         "return self.verdict\n\n\nclass",
         "return VIOLATED\n\n\nclass",
-        "what it answers",
+        "it does not return the verdict",
     ),
     "a duration": (RESPONSE, "time + 5_000_000_000", "time + 5_000_000_001", "in state 0, a step does something else"),
     "a clock that goes on": (
