@@ -1,4 +1,4 @@
-"""For pytest: the fixture `ltlc_monitor`, which tests of simulations step, and which fails them where properties do.
+"""For pytest: the fixture `ltlc_monitor`, which tests of simulations step, and which fails them for a violation.
 
 Each run of pytest imports it in an environment that has ltlc; the compiler is imported where a test asks for it.
 """
@@ -48,9 +48,9 @@ class LtlcMonitor:
     ) -> None:
         """Watch the properties in `file`, or those in `text`, from before the first step on.
 
-        A violation fails the test `at_once`, or else at its end. What is owed then, or never started, fails it, too,
-        unless `allow_open`. `signals`, `encoding` and `message_paths` are those of `ltlc.monitor`. A run that was
-        stepped before ends here.
+        A violation fails the test `at_once`, or otherwise at its end. An obligation still open then, or a property
+        never started, fails it, too, unless `allow_open`. `signals`, `encoding` and `message_paths` are those of
+        `ltlc.monitor`. A run that was stepped before ends here.
         """
         from ltlc.base.errors import UnusableInput
         from ltlc.interfaces.api.monitor import LiveRun

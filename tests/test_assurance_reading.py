@@ -131,7 +131,12 @@ CHANGED = {
         "        INFINITY = v\n        if not d <= INFINITY",
         "does not test for NaN",
     ),
-    "a threshold": (STOP, "d > 3.0", "d > 3.0000000000000004", "in state 1, `d > 3.0000000000000004` is no condition"),
+    "a threshold": (
+        STOP,
+        "d > 3.0",
+        "d > 3.0000000000000004",
+        "in state 1, `d > 3.0000000000000004` is not a condition",
+    ),
     "a successor": (
         STOP,
         "self.state = 3",
@@ -144,7 +149,7 @@ CHANGED = {
         "self.verdict = SATISFIED",
         "in state 3, the verdict is SATISFIED instead of VIOLATED",
     ),
-    "a relation": (STOP, "if d < 1.0", "if d <= 1.0", "`d <= 1.0` is no condition"),
+    "a relation": (STOP, "if d < 1.0", "if d <= 1.0", "`d <= 1.0` is not a condition"),
     "a negation": (
         STOP,
         "-0.01 <= v <= 0.01",
@@ -157,7 +162,12 @@ CHANGED = {
         "not d <= INFINITY",
         "what makes a step invalid",
     ),
-    "what it answers": (STOP, "return self.verdict\n\n\nclass", "return VIOLATED\n\n\nclass", "what it answers"),
+    "what it answers": (
+        STOP,
+        "return self.verdict\n\n\nclass",
+        "return VIOLATED\n\n\nclass",
+        "it does not return the verdict",
+    ),
     "a duration": (RESPONSE, "time + 5_000_000_000", "time + 5_000_000_001", "in state 0, a step does something else"),
     "a clock that goes on": (
         RESPONSE,
@@ -234,7 +244,7 @@ CHANGED = {
         TEXTS["age"],
         "if time <= self.due_0:",
         "if time > self.due_0:",
-        "`due = due_0` is nothing that",
+        "`due = due_0` is not an outcome of a decision",
     ),
     "an age at a step without one": (
         TEXTS["age beside values"],
@@ -306,7 +316,7 @@ CHANGED = {
         TEXTS["elements"],
         "        scan = elements_of(scan)\n",
         "",
-        "is not taken apart",
+        "is not converted",
     ),
     "integers that elements may be": (
         TEXTS["arrays"],
@@ -364,7 +374,12 @@ CHANGED = {
         "an invalid step does more than it should",
     ),
     "the beginning": (STOP, "self.invalid = 0", "self.invalid = 1", "a monitor begins differently"),
-    "the beginning twice": (STOP, "self.invalid = 0", "self.invalid = 0; self.invalid = 0", "does something else"),
+    "the beginning twice": (
+        STOP,
+        "self.invalid = 0",
+        "self.invalid = 0; self.invalid = 0",
+        "the function that initialises a monitor differs",
+    ),
     "a name that is set": (STOP, "        if not d <=", "        d = v\n        if not d <=", "`d` is set again"),
     "a clock that hides a method": (TWO, "due_1", "expire", "an attribute has the name of something else"),
     "a function": (TEXTS["arithmetic"], "if right != 0:", "if right >= 0:", "the function `divide` is not that of"),
@@ -420,7 +435,7 @@ IN_MONITORS = {
     "what is answered": (
         'return {\n            "a": self.a.verdict',
         'return "a", {\n            "a": self.a.verdict',
-        "answer",
+        "does not return",
     ),
     "another class": ("class Monitors:", "class Monitors(dict):", "`Monitors` contains more than its methods"),
     "a method left out": (
@@ -484,7 +499,7 @@ IN_SIGNALS = {
     "what computes one": (
         "robot_position_x - 10.0",
         "robot_position_x - 11.0",
-        "computes something else than `robot.distance",
+        "does not compute `robot.distance",
     ),
     "what it does": (
         "    return norm",
@@ -494,7 +509,7 @@ IN_SIGNALS = {
     "what it is given": (
         '(Input("robot.position.x"), Input("robot.position.y")),',
         '(Input("robot.position.x"),),',
-        "not given",
+        "does not receive",
     ),
     "a topic": ('x", "/model/robot/odometry"', 'x", "/odometry"', "`robot.position.x` is read from the wrong place"),
     "a type": ('odometry", "number"', 'odometry", "integer"', "`robot.position.x` is read from the wrong place"),

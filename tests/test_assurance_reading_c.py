@@ -125,7 +125,7 @@ def test_no_change_of_c_that_alters_a_verdict_is_accepted(compiled: Compiled, dr
 
 STOP, RESPONSE, AGE, AGED = (TEXTS[name] for name in ("stop sign", "response", "age", "age beside values"))
 CHANGED = {
-    "a threshold": (STOP, "d > 3.0f", "d > 3.5f", "in state 1, `d > 3.5` is no condition"),
+    "a threshold": (STOP, "d > 3.0f", "d > 3.5f", "in state 1, `d > 3.5` is not a condition"),
     "a single that is none": (STOP, "d > 3.0f", "d > 0.1f", "`0.1f` does not occur in step functions"),
     "a successor": (
         STOP,
@@ -140,7 +140,7 @@ CHANGED = {
         "self->verdict = PROPS_SATISFIED",
         "in state 3, the verdict is SATISFIED instead of VIOLATED",
     ),
-    "a relation": (STOP, "d < 1.0f", "d <= 1.0f", "`d <= 1.0` is no condition"),
+    "a relation": (STOP, "d < 1.0f", "d <= 1.0f", "`d <= 1.0` is not a condition"),
     "a conversion": (TEXTS["margins"], "(double)d <", "(double)(float)v <", "does not occur in step functions"),
     "a check for NaN": (
         STOP,
@@ -226,7 +226,12 @@ CHANGED = {
         "i + 1 < elements_2.length",
         "`i + 1` in `any_1` is not `i`",
     ),
-    "a function": (TEXTS["strings"], "return *left == *right;", "return true;", "the function `same_text` is not that"),
+    "a function": (
+        TEXTS["strings"],
+        "return *left == *right;",
+        "return true;",
+        "the function `same_text` is not the shared one",
+    ),
     "a macro": (
         STOP,
         "#include <float.h>",
@@ -328,7 +333,7 @@ def test_c_that_somebody_has_changed_is_found_out(tmp_path: Path, capsys: pytest
     assert cli.main(build) == 0
     certify = ["certify", str(properties), str(certificate), "--code", str(code)]
     assert cli.main(certify) == 0
-    assert "are the monitor" in capsys.readouterr().out
+    assert "match the certified monitor" in capsys.readouterr().out
     code.write_text(code.read_text().replace("> 1.0", "> 2.0"))
     assert cli.main(certify) == 1
     assert "`2.0` where ltlc emits `1.0`" in capsys.readouterr().out

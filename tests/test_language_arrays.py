@@ -167,7 +167,7 @@ def test_what_cannot_be_said_of_arrays_and_sets_is_an_error(text: str, code: str
 
 def test_not_in_is_told_where_not_stands() -> None:
     found = next(d for d in findings(ARRAYS + "never flag not in {true}") if d.code == "LTL001")
-    assert found.message == "`not` stands before the value, not before `in`"
+    assert found.message == "`not` comes before the value, not before `in`"
     assert found.help == "write `not x in {1, 2}`"
 
 

@@ -86,7 +86,7 @@ def test_a_path_of_too_many_points_is_thinned_which_is_said(tmp_path: Path, monk
     monkeypatch.setattr(maps, "MOST_POINTS", 10)
     rows = ("time,x,y", *(f"{n},{n / 10},{n % 2}" for n in range(40)))
     found = drawn(tmp_path, "eventually inside(x, y, door) within 1 ns", *rows)
-    assert found.remark == "Of 40 points of the path, 10 are drawn."
+    assert found.remark == "10 of 40 points of the path are drawn."
 
 
 def test_a_page_has_the_map_of_a_property_with_a_zone_and_of_no_other(tmp_path: Path) -> None:

@@ -152,7 +152,7 @@ def test_what_is_left_out_is_said_and_what_is_violated_goes_first(
 
 
 def test_a_recording_without_a_row_has_a_page_that_says_so(tmp_path: Path) -> None:
-    assert "Nothing of it could be judged." in page("never v > 2\n", recorded(tmp_path))
+    assert "No part of it could be judged." in page("never v > 2\n", recorded(tmp_path))
 
 
 def test_a_damaged_recording_is_shown_up_to_the_damage(tmp_path: Path) -> None:
@@ -212,7 +212,7 @@ def test_a_recording_with_the_time_of_day_is_shown_from_its_beginning_on(tmp_pat
 def test_of_a_large_monitor_only_the_way_is_drawn(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("ltlc.interfaces.pages.machines.MOST_STATES", 1)
     html = page("after near, eventually v > 1\n", recorded(tmp_path, "0,0,false", "1,0,false"))
-    assert "Only the way that was taken is shown: the monitor has" in html
+    assert "Only the path taken is shown: the monitor has" in html
 
 
 def test_the_command_writes_the_page_with_english_and_examples(
@@ -224,7 +224,7 @@ def test_the_command_writes_the_page_with_english_and_examples(
     assert main([*arguments, "--format", "json"]) == 1
     json.loads(capsys.readouterr().out)
     html = (tmp_path / "out.html").read_text(encoding="utf-8")
-    assert "At no step: v is more than 2." in html
+    assert "V is never more than 2." in html
     assert "violated at the earliest" in html
 
 

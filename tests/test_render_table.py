@@ -24,7 +24,7 @@ def test_a_step_is_a_row_and_a_signal_a_column() -> None:
 
 def test_a_loop_is_marked() -> None:
     lines = example_lines(example([{"on": True}, {"on": False}], ["", ""], loop=1))
-    assert lines[1:] == ["step     on", "   0   true", "  1*  false", "the steps marked * repeat for ever"]
+    assert lines[1:] == ["step     on", "   0   true", "  1*  false", "the steps marked * repeat forever"]
 
 
 def test_a_table_that_is_too_wide_is_turned() -> None:

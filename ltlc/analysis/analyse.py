@@ -72,7 +72,7 @@ def analyse(
     *,
     pedantic: bool = False,
 ) -> Report:
-    """All that is to be said about `specification`, within `budget` for everything together.
+    """All findings about `specification`, within `budget` for everything together.
 
     If `pedantic`, also report matters of opinion. `watch` is told how far each stage is. Raises SpotMissing.
     """

@@ -1,4 +1,4 @@
-"""The elements of arrays, for z3: how many there are of each kind, the kinds being told apart by what is asked of them.
+"""The elements of arrays, for z3: how many there are of each kind, distinguished by what is asked of them.
 
 Which conditions an element can satisfy together is a kind; an array has any number of elements of each. So a count is a
 sum over kinds, whatever the length of the array, and the smallest element is below a number if some kind is.

@@ -20,7 +20,7 @@ from ltlc.specification.specification import Specification
 
 @dataclass(frozen=True, slots=True)
 class Examined:
-    """What was analysed, None if it has errors of form, with all that is to be said about it in its order."""
+    """What was analysed, None if it has errors of form, with all findings about it in its order."""
 
     study: Study | None
     diagnostics: list[Diagnostic]
@@ -51,7 +51,7 @@ def examine(
     pedantic: bool = False,
     recordings: Iterable[Path] = (),
 ) -> Examined:
-    """What is to be said about `source`, or why it could not be read; what authors suppress in the text is left out.
+    """The findings about `source`, or why it could not be read; what authors suppress in the text is omitted.
 
     The messages that `recordings` define are known. Otherwise as `load_text` and `analyse`. Raises SpotMissing.
     """
@@ -72,7 +72,7 @@ def examine_loaded(
     *,
     pedantic: bool = False,
 ) -> Examined:
-    """What is to be said about a `specification`, of which the front end says `diagnostics`. Raises SpotMissing."""
+    """The findings about a `specification`, of which the front end says `diagnostics`. Raises SpotMissing."""
     found = analyse(specification, encoding, budget, watch, pedantic=pedantic)
     told = in_order(suppress(specification, [*diagnostics, *found.diagnostics], pedantic=pedantic))
     return Examined(found.study, told)

@@ -24,7 +24,7 @@ from ltlc.specification.text import read_texts
 class Example:
     """A run: for each step the values of the signals, headed by `signals`, and a remark, which may be empty.
 
-    If `loop` is not None, the steps from that one on repeat for ever. Of a run in time, `times` has the time of each
+    If `loop` is not None, the steps from that one on repeat forever. Of a run in time, `times` has the time of each
     row, and a row whose number is in `by_time` is no step: there, something changes because time has passed.
     """
 
@@ -150,7 +150,7 @@ def _without_news(values: Values) -> Values:
 
 
 def example_of_lasso(setting: Setting, lasso: Lasso, caption: str) -> Example | None:
-    """An example that repeats the loop of `lasso` for ever."""
+    """An example that repeats the loop of `lasso` forever."""
     return example_of(setting, lasso.stem + lasso.loop, caption, loop=len(lasso.stem))
 
 

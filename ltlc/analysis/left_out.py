@@ -1,4 +1,4 @@
-"""Mends that leave out what makes no difference, a property or a bound, where the text shows plainly what that is."""
+"""Fixes that omit what makes no difference, a property or a bound, where the text shows clearly what that is."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _FIRST_BOUND = re.compile(r"\(*(within\s+[\d.]+\s*\w+\s*,\s*)")
 
 
 def without_property(advice: str, source: Source, span: Span) -> Help:
-    """`advice` to leave out the property at `span`: its lines, if it has them for itself, with its label."""
+    """`advice` to omit the property at `span`: its lines, if it has them for itself, with its label."""
     start, text = _label_start(source.text, span), source.text
     end = _END.match(text, span.end)
     if start is None or end is None:
@@ -31,7 +31,7 @@ def _label_start(text: str, span: Span) -> int | None:
 
 
 def without_bound(source: Source, span: Span) -> tuple[Fix, ...]:
-    """The mend that takes the bound from what is at `span`, if that begins or ends with one."""
+    """The fix that takes the bound from what is at `span`, if that begins or ends with one."""
     first = _FIRST_BOUND.match(source.text, span.start, span.end)
     last = _LAST_BOUND.search(source.text, span.start, span.end)
     place = Span(*first.span(1)) if first else Span(*last.span()) if last else None

@@ -1,4 +1,4 @@
-"""What only z3 can tell of atoms: which of them can hold together, and numbers that make a run of given letters."""
+"""What only z3 can decide about atoms: which can hold together, and numbers that make a run of given letters."""
 
 from __future__ import annotations
 

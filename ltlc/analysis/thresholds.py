@@ -71,7 +71,7 @@ def valuations(atoms: Sequence[Atom]) -> dict[Letter, Values] | None:
 
 
 def _terms(condition: Condition) -> Iterator[Expression]:
-    """What `condition` compares, constants left out."""
+    """What `condition` compares, constants omitted."""
     for operand in operands(condition):
         if not isinstance(operand, Number | String | Boolean):
             yield operand

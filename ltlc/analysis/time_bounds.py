@@ -26,7 +26,7 @@ class TimeBound:
 
 
 def with_bound(property_: Property, path: Path, duration: Nanoseconds) -> Property:
-    """`property_` with a bound of `duration` in the place of the one at `path`."""
+    """`property_` with a bound of `duration` in place of the one at `path`."""
     part = part_at(property_, path)
     if isinstance(part, Within):
         return _with(property_, path, Within(duration, part.body))

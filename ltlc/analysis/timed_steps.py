@@ -1,6 +1,6 @@
 """Steps of a run as z3 sees them, with times: what the atoms of time and of the past are, by the trackers' definition.
 
-Nothing here knows the reset machine: clocks are numbers, and a run that repeats for ever takes time each time. So what
+Nothing here knows the reset machine: clocks are numbers, and a run that repeats forever takes time each time. So what
 the automata say has no run must have none here, and what is found here are runs with times.
 """
 

@@ -205,7 +205,7 @@ class _Edges:
         return {self.diagrams.value(terminal)[1]: letter for terminal, letter in left.items()}
 
     def settled_words(self, state: int, clocks: Clocks) -> Iterator[Lasso]:
-        """A shortest run from `state` to a verdict of either kind, its last letter repeated for ever as time goes on.
+        """A shortest run from `state` to a verdict of either kind, its last letter repeated forever as time goes on.
 
         Without `next`, the finite verdict is that of this word: `last_step_for_ever` in `proofs/Stutter.v`.
         """

@@ -1,7 +1,7 @@
 """Courses: frames after one another that take each transition of a monitor, and some at random.
 
 Where a property has history, what follows depends on what was before, so a course is found step by step: a frame that
-gives the next letter, in the place of the last one or, where that has no say in it, of an earlier one.
+gives the next letter, in place of the last one or, where that has no say in it, of an earlier one.
 """
 
 from __future__ import annotations

@@ -97,7 +97,7 @@ class _Judge:
 
 
 def _loops(letters: Sequence[Letter]) -> Iterator[Word]:
-    """One letter for ever, then two in turn, then all of them."""
+    """One letter forever, then two in turn, then all of them."""
     yield from ((letter,) for letter in letters)
     yield from pairwise(letters)
     yield tuple(letters)

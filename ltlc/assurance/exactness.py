@@ -1,4 +1,4 @@
-"""Whether verdicts come as soon as they can: what `build` requires of a monitor, and what runs without it are told."""
+"""Whether verdicts come as soon as they can: what `build` requires of a monitor, and what runs without it report."""
 
 from __future__ import annotations
 

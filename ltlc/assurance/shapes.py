@@ -1,4 +1,4 @@
-"""What is judged once for all properties that are equal but for the names in them, and whose code is."""
+"""What is judged once for all properties that, with their code, differ only in names."""
 
 from __future__ import annotations
 

@@ -35,7 +35,7 @@ Choice = dict[Letter, Situation]
 """What one decision can lead to."""
 
 Plan = dict[Situation, Word | Choice]
-"""What to do in each situation from which an outcome is certain: go round a loop for ever, or decide."""
+"""What to do in each situation from which an outcome is certain: go round a loop forever, or decide."""
 
 
 class Strategies:
@@ -119,7 +119,7 @@ class Strategies:
         }
 
     def _endings(self, here: Situation) -> dict[bool, Word]:
-        """A loop for each outcome with which one can go round for ever."""
+        """A loop for each outcome with which one can go round forever."""
         place = here.clocks, here.residual
         if place not in self._ends:
             formula, found = self._residuals.formula(here.residual), dict[bool, Word]()
@@ -131,7 +131,7 @@ class Strategies:
         return self._ends[place]
 
     def _loops(self, here: Situation) -> Iterator[Word]:
-        """Loops of one or two letters that can go round for ever."""
+        """Loops of one or two letters that can go round forever."""
         for first in self._at_once(here.clocks, here.residual):
             for letter, after in first.items():
                 follow = [(), *((second,) for choice in self._decisions(after) for second in choice)]

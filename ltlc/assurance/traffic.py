@@ -111,7 +111,7 @@ Event = Begun | Heard | Together | Passed | Quiet
 
 @dataclass(frozen=True, slots=True)
 class Settings:
-    """How samples are taken: at `rate` in Hz or at every message, for `timeout` ns from the first step or for ever."""
+    """How samples are taken: at `rate` in Hz or at every message, for `timeout` ns from the first step or forever."""
 
     rate: float | None = None
     timeout: Nanoseconds | None = None

@@ -1,4 +1,4 @@
-"""Formulas to measure with: the collections that Spot brings along, random ones, and families that grow fast."""
+"""Formulas to measure with: the collections that come with Spot, random ones, and families that grow fast."""
 
 from __future__ import annotations
 

@@ -78,7 +78,7 @@ class Letters:
     time: RunsInTime
 
     def lasting(self, clocks: int) -> Diagram:
-        """The letters that exist and can be repeated for ever from the state `clocks` of `time`."""
+        """The letters that exist and can be repeated forever from the state `clocks` of `time`."""
 
         def stays(move: Any) -> bool:
             return move is not None and move.target == clocks and len(move.fair) == self.time.sets

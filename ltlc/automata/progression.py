@@ -152,7 +152,7 @@ class Residuals:
         return self._substitute(residual, after, self._progressed)
 
     def letters_repeated(self, residual: Diagram) -> Diagram:
-        """True for the letters that satisfy `residual` if they are repeated for ever."""
+        """True for the letters that satisfy `residual` if they are repeated forever."""
 
         def forever(level: int) -> Diagram:
             match self._obligations[level - self._first_level]:
@@ -204,7 +204,7 @@ class Residuals:
 def _satisfiable(graph: Machine, wanted: list[Place], residuals: Residuals, session: Session) -> list[bool]:
     """Whether some run from `wanted[q]` satisfies it, for each state q; q's successors want what remains of it.
 
-    Most are decided by a letter that can be repeated for ever, or by a successor; Spot decides what is left.
+    Most are decided by a letter that can be repeated forever, or by a successor; Spot decides what is left.
     """
     diagrams = graph.letters.diagrams
     successors = [[q for q in diagrams.values(row) if q is not Letter.IMPOSSIBLE] for row in graph.successors]

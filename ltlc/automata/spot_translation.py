@@ -89,7 +89,7 @@ class Session:
         """Whether the word, which is not empty, satisfies `formula` as a finite word.
 
         A finite word is read as an infinite one in which `alive` holds up to its end and never again (De Giacomo and
-        Vardi 2013): it is accepted where the rest can be accepted with `alive` false for ever.
+        Vardi 2013): it is accepted where the rest can be accepted with `alive` false forever.
         """
         alive, dead = spot.formula.ap("alive"), spot.formula.Not(spot.formula.ap("alive"))
         frame = spot.formula.And([alive, spot.formula.U(alive, spot.formula.G(dead))])

@@ -192,7 +192,7 @@ class Steps:
         return f"_expire_{decision}" if self._held else f"_decide_{decision}"
 
     def _branch(self, branch: Branch, source: int | None, depth: int) -> tuple[Statement, ...]:
-        """One `if` statement; a side that changes nothing is left out, one that asks further comes last."""
+        """One `if` statement; a side that changes nothing is omitted, one that asks further comes last."""
         then = self._target(branch.then, source, depth + 1)
         otherwise = self._target(branch.otherwise, source, depth + 1)
         if then == otherwise:

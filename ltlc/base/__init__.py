@@ -1,1 +1,1 @@
-"""What all rooms may use: places in text, findings, fixes, files, limits, and how findings are shown."""
+"""What every room may use: places in text, findings, fixes, files, limits, and how findings are shown."""

@@ -1,4 +1,4 @@
-"""What ltlc has to say about a file, as data: collected by the passes, shown by `ltlc.base.render`."""
+"""Diagnostics about a file, as data: collected by the passes, shown by `ltlc.base.render`."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ class Label:
 
 @dataclass(frozen=True, slots=True)
 class Fix:
-    """A mend that needs no more thought than a yes: what to write in the place of parts of the source.
+    """A fix that needs no more thought than a yes: what to write in place of parts of the source.
 
-    `title` says what it does, as an order. The `edits` do not overlap. It `is_certain` if it is the only mend that
+    `title` says what it does, as an order. The `edits` do not overlap. It `is_certain` if it is the only fix that
     makes sense, so that a program may carry it out; else it is one that a person may choose.
     """
 
@@ -40,7 +40,7 @@ class Fix:
 
 @dataclass(frozen=True, slots=True)
 class Help:
-    """How to mend something: in words, and by `fixes` where it can be written down."""
+    """How to fix something: in words, and by `fixes` where it can be written down."""
 
     text: str
     fixes: tuple[Fix, ...] = ()
@@ -53,7 +53,7 @@ class Diagnostic:
     `code` is stable (`LTL` and three digits) and `name` its mnemonic; both are listed in `ltlc.base.codes`.
     `message` stands alone, without the source. `primary` is the place the finding is about, `secondary` what it
     refers to; `primary` is None only where there is no text, such as a file that cannot be read. `help` says how to
-    mend it, and the `fixes` are mends that can be carried out as they are. `example` is a run that shows it, in the
+    fix it, and the `fixes` are fixes that can be carried out as they are. `example` is a run that shows it, in the
     form in which the JSON output carries it, or None.
     """
 

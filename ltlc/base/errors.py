@@ -1,4 +1,4 @@
-"""What the Python interface raises where ltlc cannot go on with what it was given."""
+"""What the Python interface raises for unusable input."""
 
 from __future__ import annotations
 

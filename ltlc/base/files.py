@@ -59,7 +59,7 @@ def _make_folders(folder: Path) -> list[Path]:
 
 
 def rewrite_text(path: Path, text: str) -> None:
-    """Write `text` in the place of what is in the file at `path`; its permissions and byte order mark stay.
+    """Write `text` in place of what is in the file at `path`; its permissions and byte order mark stay.
 
     Raises OSError if the file cannot be written; then it is as it was.
     """

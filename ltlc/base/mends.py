@@ -1,4 +1,4 @@
-"""Making mends, so that what a person is advised and what a program can carry out are one; and carrying them out."""
+"""Makes and applies fixes, so that the hint for a person and the edit for a program are the same."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from ltlc.base.source import Span
 
 
 def writing(span: Span, text: str, *, is_certain: bool = False) -> Fix:
-    """The mend that puts `text` in the place of `span`."""
+    """The fix that puts `text` in place of `span`."""
     return Fix(f"write `{' '.join(text.split())}`", ((span, text),), is_certain)
 
 
@@ -22,19 +22,19 @@ def write(*fixes: Fix) -> Help:
 
 
 def put(place: int, text: str, *, is_certain: bool = False) -> Fix:
-    """The mend that puts `text` in before the character at `place`."""
+    """The fix that puts `text` in before the character at `place`."""
     return Fix(f"insert `{text.strip()}`", ((Span(place, place), text),), is_certain)
 
 
 def around(title: str, span: Span, before: str, after: str) -> Fix:
-    """The mend that `title` orders: `before` and `after` put around what stands at `span`."""
+    """The fix that `title` orders: `before` and `after` put around what stands at `span`."""
     return Fix(title, ((Span(span.start, span.start), before), (Span(span.end, span.end), after)))
 
 
 def respell(span: Span, name: str, known: Iterable[str], *, is_closed: bool = False) -> Help | None:
     """The question whether, by `name` at `span`, the nearest of the `known` names is meant; None if none is near.
 
-    The mend is certain if nobody can add to the known names, for their list `is_closed`, and `name` is a slip of the
+    The fix is certain if nobody can add to the known names, for their list `is_closed`, and `name` is a slip of the
     pen of one of them only.
     """
     names = list(known)
@@ -46,7 +46,7 @@ def respell(span: Span, name: str, known: Iterable[str], *, is_closed: bool = Fa
 
 
 def uncertain(found: Diagnostic) -> Diagnostic:
-    """`found`, with mends that are a person's to choose."""
+    """`found`, with fixes that are a person's to choose."""
     return replace(found, fixes=tuple(replace(fix, is_certain=False) for fix in found.fixes))
 
 

@@ -42,7 +42,7 @@ def words(name: str) -> Words:
 def slip(name: Words, other: Words) -> tuple[str, str] | None:
     """The word of one name that is probably a slip of the pen, and that of the other which it should be.
 
-    They differ in nothing else, and by case or a letter: left out, put in, replaced, or exchanged with the next one.
+    They differ in nothing else, and by case or a letter: omitted, put in, replaced, or exchanged with the next one.
     Names that differ in their numbers have the same words, for they are of several things of a kind; so are `door_a`
     and `door_b`.
     """

@@ -56,7 +56,7 @@ class Source:
         return " ".join(self.text[span.start : span.end].split())
 
     def replaced(self, span: Span, written: Mapping[Span, str]) -> str:
-        """The text that `span` covers, with what is `written` in the place of parts of it."""
+        """The text that `span` covers, with what is `written` in place of parts of it."""
         text, end = "", span.start
         for part in sorted(part for part in written if span.start <= part.start and part.end <= span.end):
             text += self.text[end : part.start] + written[part]

@@ -17,7 +17,7 @@ MOST_ATOMS = 12
 
 
 def states_as_new(machine: Machine, specification: PropertySpecification, slicing: Slicing) -> frozenset[int]:
-    """The states in which nothing is owed, and from which a message leads where a first one does, if no clock runs.
+    """The states without an open obligation from which a message leads where a first one does, if no clock runs.
 
     There are none unless a message brings all that the property reads: it reads one topic, and no history.
     """
@@ -42,7 +42,7 @@ def states_as_new(machine: Machine, specification: PropertySpecification, slicin
 
 
 def _leads(machine: Machine, step: Target, letter: Mapping[int, bool]) -> Outcome | None:
-    """Where a step with this letter leads, clocks that stop left out; None if clocks decide that."""
+    """Where a step with this letter leads, clocks that stop omitted; None if clocks decide that."""
     found: set[Outcome] = set()
     ahead = [step]
     for target in ahead:

@@ -79,7 +79,7 @@ def _has_value(part: Expression, wanted: Current, value: Instead) -> bool:
 
 
 def _with(part: Expression, wanted: Current, value: Instead) -> Expression:
-    """`part` with numbers in the place of what is computed of `wanted` alone."""
+    """`part` with numbers in place of what is computed of `wanted` alone."""
     if set(inputs(part)) == {wanted} and not isinstance(part, Slice | Element) and not _is_array(part):
         return Number(number(part, {wanted: value}))
     match part:

@@ -196,7 +196,7 @@ class Packed(NamedTuple):
 def pack(diagrams: Diagrams, roots: Sequence[Diagram | None], atoms: Sequence[Expression]) -> Packed:
     """The only numbering of what `roots` lead through: as met from them, low before high.
 
-    Level k asks atom k, and those above ask clocks. Atoms that are not asked are left out.
+    Level k asks atom k, and those above ask clocks. Atoms that are not asked are omitted.
     """
     found = list(diagrams.reachable(*(root for root in roots if root is not None)))
     nodes = [node for node in found if not diagrams.is_terminal(node)]

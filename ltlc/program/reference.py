@@ -1,4 +1,4 @@
-"""What machines do, said as directly as it can be: the reference for whatever prints or runs them.
+"""What machines do, as directly as possible: the reference for whatever prints or runs them.
 
 Numbers are computed by the reference for values of specifications; the table of functions only says which function of
 the language a primitive is.

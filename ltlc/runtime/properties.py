@@ -1,4 +1,4 @@
-"""A property as it is judged while a run goes on, and what is told of its verdict."""
+"""A property as it is judged during a run, and what is reported about its verdict."""
 
 from __future__ import annotations
 

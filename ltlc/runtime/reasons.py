@@ -1,4 +1,4 @@
-"""Why a property is violated, and why a step is none."""
+"""Why a property is violated, and why a step is invalid."""
 
 from __future__ import annotations
 

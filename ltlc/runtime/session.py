@@ -1,4 +1,4 @@
-"""What is known of a run: data, which whoever judges what comes in takes forward."""
+"""The state of a run: data that the judges of incoming samples carry forward."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is known of one property while a run goes on, and what is recorded of it."""
+"""The state of one property during a run, and what is recorded about it."""
 
 from __future__ import annotations
 

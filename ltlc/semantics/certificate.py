@@ -49,7 +49,7 @@ class Place(NamedTuple):
 
 
 Progress = Until | int | None
-"""What cannot go on for ever without: an eventuality, or a fairness set of the reset machine."""
+"""What cannot go on forever without: an eventuality, or a fairness set of the reset machine."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -217,7 +217,7 @@ class _Checker:
                 return progress < self.time.sets
 
     def progresses(self, progress: Progress, move: Move[Condition]) -> Condition:
-        """That a step by `move` is one of those that cannot stay away for ever. Coq: `coming`."""
+        """That a step by `move` is one of those that cannot stay away forever. Coq: `coming`."""
         match progress:
             case None:
                 return TRUE_CONDITION

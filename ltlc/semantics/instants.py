@@ -60,7 +60,7 @@ def instants(
 ) -> tuple[Instant, ...]:
     """The instants of the run of `steps`, times not decreasing, that has been looked at up to `until`.
 
-    With `among`, held instants at other times are left out.
+    With `among`, held instants at other times are omitted.
     """
     pulses = frozenset(each.name for each in news)
     ends = [step.time for step in steps[1:]] + [until]

@@ -100,7 +100,7 @@ class Plays:
         )
 
     def lasts(self, clocks: Clocks, loop: Word) -> bool:
-        """Whether time can go on for ever with `loop`: nothing but its letters comes, and they take time."""
+        """Whether time can go on forever with `loop`: nothing but its letters comes, and they take time."""
         here, last, started, takes_time = clocks, None, set[int](), False
         for letter in loop:
             ways = self.at_once(here, letter)

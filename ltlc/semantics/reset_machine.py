@@ -2,7 +2,7 @@
 
 An atom that a clock is late is not free: it holds only after its bound has passed, then until the clock is reset. The
 machine runs all trackers of a formula side by side and lets each clock pass its next bound whenever time could: at an
-instant at which the letter is held. Infinite words are fair: time goes on for ever, so a clock that runs passes its
+instant at which the letter is held. Infinite words are fair: time goes on forever, so a clock that runs passes its
 bounds or is reset, and there is no end of instants at which the letter is held.
 
 News is over, and `previously` catches up, a nanosecond after a step: a clock that has just started passes no bound

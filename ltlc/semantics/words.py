@@ -15,7 +15,7 @@ Word = tuple[Letter, ...]
 
 @dataclass(frozen=True, slots=True)
 class Lasso:
-    """The infinite word that starts with `stem` and then repeats `loop`, which is not empty, for ever."""
+    """The infinite word that starts with `stem` and then repeats `loop`, which is not empty, forever."""
 
     stem: Word
     loop: Word

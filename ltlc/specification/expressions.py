@@ -48,7 +48,7 @@ _ELEMENTS = {
 class Match:
     """In a path, after a list of messages: the first element whose field `key` is the string `value`.
 
-    `tf2_msgs/TFMessage.transforms` has its entries told apart by `child_frame_id`.
+    `tf2_msgs/TFMessage.transforms` has its entries distinguished by `child_frame_id`.
     """
 
     key: str

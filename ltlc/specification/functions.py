@@ -78,7 +78,7 @@ class Function(Enum):
     NEAREST = "nearest", AMONG, "nearest(x, a)", "the first of the elements that differ least from x"
     """The element of an array, as a double, that differs least from a number; the first of several.
 
-    Elements that are NaN are left out; of none: NaN. Differences are those of `GAP`, in doubles, without their sign.
+    Elements that are NaN are omitted; of none: NaN. Differences are those of `GAP`, in doubles, without their sign.
     """
     LEN = "len", ARRAY, "len(a)", "the number of elements", "length"
     """How many elements one array has, those that are NaN included."""

@@ -1,4 +1,4 @@
-"""Which numbers an expression can be, as far as its form and the types of its fields tell."""
+"""Which numbers an expression can be, as far as its form and the types of its fields determine them."""
 
 from __future__ import annotations
 

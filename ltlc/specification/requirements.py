@@ -1,4 +1,4 @@
-"""What a property is to ensure for those who asked for it: text and attributes, which mean nothing to a monitor."""
+"""The requirement that a property states: text and attributes, which have no effect on a monitor."""
 
 from __future__ import annotations
 

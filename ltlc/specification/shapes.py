@@ -1,4 +1,4 @@
-"""What is equal but for the names in it: the shape of properties, of what is made of them, and of their code.
+"""What is equal except for names: the shape of properties, of what is made of them, and of their code.
 
 The definitions of the language, the checker of certificates, the analyses and the runtime never ask what something is
 called, only whether two are the same. So what is found of one property goes for all of its shape.

@@ -116,7 +116,7 @@ def _written(expression: Expression) -> tuple[str, int]:
 
 
 def read_texts(reads: Collection[Read]) -> list[str]:
-    """What is read as the author wrote it; openings are told apart where one property reads several of a signal."""
+    """What is read as the author wrote it; openings are distinguished where one property reads several of a signal."""
     times = Counter(each.signal for each in reads if isinstance(each, Opening))
     return [
         text(Opening(each.signal, each.scope if times[each.signal] > 1 else 0) if isinstance(each, Opening) else each)

@@ -1,1 +1,1 @@
-"""Formulas side by side: how encodings of one sentence relate, what tells them apart, and what they cost."""
+"""Formulas side by side: how encodings of one sentence relate, what distinguishes them, and what they cost."""

@@ -1,4 +1,4 @@
-"""Input that takes more than its budget to be read."""
+"""Input that exceeds its budget while it is read."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Reads encodings that a user has written down: a name, and an equation for each scope keyword.
+"""Reads user-defined encodings: a name, and an equation for each scope keyword.
 
     # what I think the patterns mean
     encoding patient
@@ -48,7 +48,7 @@ class _Draft:
 
 
 def read_encodings(source: Source, taken: frozenset[str], budget: Budget) -> tuple[list[Encoding], list[Diagnostic]]:
-    """The encodings that `source` defines and what is wrong with it; names in `taken` cannot be used.
+    """The encodings that `source` defines and its errors; names in `taken` cannot be used.
 
     Encodings come back only where there is no error. Raises UnusableInput where `budget` does not suffice to look at
     their equations.

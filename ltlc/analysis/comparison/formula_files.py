@@ -26,7 +26,7 @@ class _Cell:
 
 
 def questions_of_arguments(texts: Sequence[str]) -> tuple[list[Question], list[Diagnostic]]:
-    """The question how the formulas `texts` relate, and what is wrong with them."""
+    """The question how the formulas `texts` relate, and their errors."""
     reader = _Reader()
     formulas: dict[str, Formula] = {}
     for text in texts:
@@ -38,7 +38,7 @@ def questions_of_arguments(texts: Sequence[str]) -> tuple[list[Question], list[D
 
 
 def questions_of_file(source: Source) -> tuple[list[Question], list[Diagnostic]]:
-    """The questions in a file of formulas, and what is wrong with it.
+    """The questions in a file of formulas, and its errors.
 
     A line is a formula or, with a tab, a name and a formula; all of them are compared with one another. With more
     tabs, a line is a name and several formulas, which are compared with one another; `-` is none, and a first line
@@ -55,7 +55,7 @@ def questions_of_file(source: Source) -> tuple[list[Question], list[Diagnostic]]
 
 
 def formulas_of_file(source: Source) -> tuple[list[tuple[str, Formula]], list[Diagnostic]]:
-    """Every formula in a file, with its name, or itself for a name, and what is wrong with it."""
+    """Every formula in a file, with its name, or itself for a name, and its errors."""
     reader = _Reader()
     named = []
     for row in _rows(source):
@@ -90,7 +90,7 @@ def _questions_of_table(source: Source, rows: list[list[_Cell]]) -> tuple[list[Q
 
 
 class _Reader:
-    """Reads formulas and collects what is wrong with them."""
+    """Reads formulas and collects their errors."""
 
     def __init__(self) -> None:
         self.problems: list[Diagnostic] = []

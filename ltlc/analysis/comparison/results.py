@@ -95,7 +95,7 @@ class SeparatingRun:
     """A run that satisfies one formula and not the other, with the verdicts of both monitors after each step.
 
     Of a run in time the letters are instants, without those at which only time has passed and no verdict changes.
-    From step `loop` on, an infinite run repeats itself for ever; a finite one has None there. `is_shortest` says
+    From step `loop` on, an infinite run repeats itself forever; a finite one has None there. `is_shortest` says
     whether none with fewer steps exists.
     """
 

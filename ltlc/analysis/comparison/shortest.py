@@ -1,4 +1,4 @@
-"""Finds the shortest run that tells two formulas apart: a finite one, or an infinite one as a lasso.
+"""Finds the shortest run that distinguishes two formulas: a finite one, or an infinite one as a lasso.
 
 Spot says whether there is such a run; the run that it would give is not the shortest. Here the searches go breadth
 first, with one letter of each kind that the automata tell apart.
@@ -171,7 +171,7 @@ def _after(loop: Loop, edges: Loop) -> Loop:
 
 
 def _accepting(loop: Loop) -> int:
-    """The states from which repeating the loop for ever can be accepted."""
+    """The states from which repeating the loop forever can be accepted."""
     reached = _closure(loop[0])
     recurring = 0
     for state, accepting in enumerate(loop[1]):

@@ -214,7 +214,7 @@ def _run(question: Question, comparison: Comparison, run: SeparatingRun) -> Tabl
 
 
 def _leading(run: SeparatingRun) -> Iterator[tuple[str, ...]]:
-    """The number of each step, marked if it repeats for ever, and its time; none where only time passes."""
+    """The number of each step, marked if it repeats forever, and its time; none where only time passes."""
     number = 0
     for row, letter in enumerate(run.letters):
         mark = " ↻" if run.loop is not None and row >= run.loop else ""

@@ -30,7 +30,7 @@ LARGEST_PRODUCT = 24
 def ask(study: Study, component: Sequence[Subject]) -> Iterator[Finding]:
     """An error for each smallest set that cannot; `component` are properties that share signals.
 
-    A run that satisfies all of them settles it. Otherwise pairs and triples are tried, then properties are left out as
+    A run that satisfies all of them settles it. Otherwise pairs and triples are tried, then properties are omitted as
     long as there is no run; once a set is found, the question is asked of the others again, without its last property.
     """
     left = list(component)

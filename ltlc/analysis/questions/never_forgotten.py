@@ -1,4 +1,4 @@
-"""Can a property keep an id, or a message, for ever, until a limit leaves others out?"""
+"""Can a property keep an id, or a message, forever, until a limit excludes others?"""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Does a property follow from others, or say the same as one?"""
+"""Does a property follow from others, or is it equivalent to one?"""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ def _is_the_reason(study: Study, subject: Subject, other: Subject) -> bool:
 
 
 def _is_sum(study: Study, subject: Subject) -> bool:
-    """Whether the property says only what a few that follow from it say together: it is the one to leave out."""
+    """Whether the property says only what a few that follow from it say together: it is the one to omit."""
     others = [study.subjects[n] for n in sorted(study.neighbours[subject.number])]
     weaker = [o for o in others if _implies(study, [subject], o) and not _implies(study, [o], subject)]
     return 1 < len(weaker) <= LARGEST_SET and _implies(study, weaker, subject)

@@ -1,4 +1,4 @@
-"""Is there a count that `_rate_` does not let come together within its time?"""
+"""Is there a count that cannot be reached within its time at the ticks of `_rate_`?"""
 
 from __future__ import annotations
 

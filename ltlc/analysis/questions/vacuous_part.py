@@ -38,7 +38,7 @@ from ltlc.specification.specification import Path, parts
 
 
 def ask(study: Study, subject: Subject) -> Iterator[Finding]:
-    """A warning for each part that can be left out, the smallest such parts; none inside another.
+    """A warning for each part that can be omitted, the smallest such parts; none inside another.
 
     None in a scope that no run opens, nor about an interval that excludes its own trigger: that is told, and why.
     """

@@ -1,4 +1,4 @@
-"""What comparing a file with what ltlc emits can end with."""
+"""The possible outcomes of comparing a file with what ltlc emits."""
 
 from __future__ import annotations
 

@@ -121,7 +121,7 @@ def surplus(names: Sequence[str]) -> Iterator[tuple[str, Equal | Unequal]]:
 
 
 def as_one(texts: Mapping[str, str]) -> str:
-    """The properties and the runtime of a package as one module, what they import of one another left out."""
+    """The properties and the runtime of a package as one module, what they import of one another omitted."""
     (properties,) = (name for name in texts if name.count("/") == 1 and name.endswith("/properties.py"))
     package = properties.split("/")[0]
     modules = [name for name in texts if name.startswith(f"{package}/runtime/")]

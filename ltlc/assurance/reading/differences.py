@@ -1,4 +1,4 @@
-"""What two machines that are not equal do otherwise, in words: the first thing of it."""
+"""The first difference between two machines that are not equal, in words."""
 
 from __future__ import annotations
 

@@ -52,7 +52,7 @@ class Written:
 def written(
     code: str, machines: Sequence[Machine], specifications: Sequence[PropertySpecification]
 ) -> Sequence[Written | Difference]:
-    """What is written of each of `machines` in a file of a target that can be read back, or what is wrong with it.
+    """What is written of each of `machines` in a file of a target that can be read back, or its errors.
 
     `specifications` tell where the signals come from that these read.
     """

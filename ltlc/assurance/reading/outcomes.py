@@ -1,4 +1,4 @@
-"""What comparing a machine, or a text that says one, can end with."""
+"""The possible outcomes of comparing a machine, or a text that contains one."""
 
 from __future__ import annotations
 

@@ -82,7 +82,7 @@ class Written:
 
 
 def written(text: str, machines: Sequence[Machine]) -> Sequence[Written | Difference | None]:
-    """What is written of each of `machines`, or what is wrong with it; None of those that are not read yet."""
+    """What is written of each of `machines`, or its errors; None of those that are not read yet."""
     try:
         file = RustFile(text)
         names = [name for name in file.types if name not in _SHARED]

@@ -65,7 +65,7 @@ class Token(NamedTuple):
 
 
 def tokens(text: str) -> Iterator[Token]:
-    """The tokens of a text, comments and blanks left out. Raises NotUnderstoodError."""
+    """The tokens of a text, comments and blanks omitted. Raises NotUnderstoodError."""
     end, line = 0, 1
     while end < len(text):
         match = _TOKEN.match(text, end)

@@ -1,4 +1,4 @@
-"""What an emitted node says of signals: where they are read from, and what they are computed as."""
+"""The signals of an emitted node: where they are read from, and how they are computed."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What an emitted node says of how a property is judged for each id, or each message."""
+"""How an emitted node judges a property for each id, or each message."""
 
 from __future__ import annotations
 

@@ -175,7 +175,7 @@ Block = tuple[Statement, ...]
 
 @dataclass(frozen=True, slots=True)
 class Method:
-    """A method with the names of its parameters, the monitor itself left out."""
+    """A method with the names of its parameters, the monitor itself omitted."""
 
     parameters: tuple[str, ...]
     body: Block

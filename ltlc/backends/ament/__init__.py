@@ -1,4 +1,4 @@
-"""ROS 2 packages: what `colcon build` and `colcon test` take, with the node of the `ros2` target taken apart.
+"""ROS 2 packages for `colcon build` and `colcon test`, with the node of the `ros2` target split into modules.
 
 What the properties say is one module that a person can review; the runtime and the part that speaks ROS are modules
 beside it, the same in every package of one version of ltlc.

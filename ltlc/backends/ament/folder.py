@@ -1,4 +1,4 @@
-"""The folder of a package: what may be written over."""
+"""The folder of a package: what may be overwritten."""
 
 from __future__ import annotations
 

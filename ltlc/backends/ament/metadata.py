@@ -1,4 +1,4 @@
-"""What a package says of itself beside what it needs: its version, who keeps it, and its licence."""
+"""A package's metadata besides its dependencies: version, maintainer and licence."""
 
 from __future__ import annotations
 

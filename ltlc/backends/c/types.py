@@ -1,4 +1,4 @@
-"""What the types of a program are called in C."""
+"""The names of a program's types in C."""
 
 from __future__ import annotations
 

@@ -424,7 +424,7 @@ class ScopePart:
 def scopes(specification: PropertySpecification, source: Source) -> list[ScopePart]:
     """The `after` and `after_until` that no other scope keyword encloses.
 
-    What is inside `until` is left out: its scopes end with a step that is no part of them. So is what is inside an
+    What is inside `until` is omitted: its scopes end with a step that is no part of them. So is what is inside an
     interval, where events from before open nothing, and scopes with an event that changes between steps and reads a
     value at an opening: the monitor knows it, what watches such events does not.
     """

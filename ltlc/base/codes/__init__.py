@@ -1,4 +1,4 @@
-"""The registry of diagnostic codes: every diagnostic is made here, so that there is none without a name and a page.
+"""The registry of diagnostic codes: every diagnostic is made here, so that each has a name and a page.
 
 The first digit tells the subject: 0 syntax, 1 names, 2 types and messages, 3 properties, 4 settings, 5 and 6 what
 analyses find, 7 monitors and the gate, 8 recordings, 9 files. `CODE.md` beside this file explains a code.
@@ -18,7 +18,7 @@ ERROR, WARNING, NOTE = Severity.ERROR, Severity.WARNING, Severity.NOTE
 
 @dataclass(frozen=True, slots=True)
 class Code:
-    """What a code stands for: its mnemonic, its page's title, how much it weighs, and whether it is told on demand."""
+    """What a code stands for: its mnemonic, its page's title, its weight, and whether it is reported on demand only."""
 
     name: str
     title: str

@@ -1,4 +1,4 @@
-"""What a job may use, and what is said of one that needs more."""
+"""The limits of a job, and the wording for one that exceeds them."""
 
 from __future__ import annotations
 

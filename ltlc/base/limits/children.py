@@ -1,4 +1,4 @@
-"""Does jobs in child processes that can be stopped: each with a deadline and a bound on memory.
+"""Runs jobs in child processes that can be stopped: each with a deadline and a limit on memory.
 
 Spot holds the interpreter while it works, ignores signals of Python's, and ends the process when memory runs out; only
 another process can bound it. A child bounds itself, by a timer and a resource limit of the system's, so it ends even if

@@ -26,7 +26,7 @@ def example_lines(example: dict[str, Any]) -> list[str]:
     table = aligned([head, *rows], right=numbers)
     if max(map(len, table)) > WIDTH:
         table = aligned(list(zip(head, *rows, strict=True)), right=range(1, 1 + len(rows)))
-    repeated = ["the steps marked * repeat for ever"] if example["loop"] is not None else []
+    repeated = ["the steps marked * repeat forever"] if example["loop"] is not None else []
     return [example["caption"], *table, *repeated]
 
 

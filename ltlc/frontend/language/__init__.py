@@ -32,7 +32,7 @@ STDIN = Path("-")
 def load(
     path: str | Path, message_paths: Sequence[str] = (), encoding: Encoding = EPISODE
 ) -> tuple[Specification | None, list[Diagnostic]]:
-    """The specification in the file at `path`, or None, and all that is to be said about it, errors and warnings.
+    """The specification in the file at `path`, or None, and all findings about it, errors and warnings.
 
     The path `-` is standard input. `message_paths` are folders with `.msg` files or ROS packages, beside the messages
     of ROS 2 Jazzy. Under `encoding` the bounds on time have to have clocks.
@@ -56,7 +56,7 @@ def load_text(
 
 @dataclass(frozen=True, slots=True)
 class ReadText:
-    """A text as far as it can be read: its tree, what looked up the names in it, and all that is to be said about it.
+    """A text as far as it can be read: its tree, what looked up the names in it, and all findings about it.
 
     `sound` is the specification of those of its properties that have no error.
     """

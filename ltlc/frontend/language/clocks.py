@@ -1,4 +1,4 @@
-"""Bounds that one clock cannot measure: why, and how else to say what they probably mean."""
+"""Bounds that one clock cannot measure: why, and another way to write what they probably mean."""
 
 from __future__ import annotations
 

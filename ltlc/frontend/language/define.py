@@ -28,7 +28,7 @@ from ltlc.specification.expressions import Field
 from ltlc.specification.specification import DefinitionKind
 
 MOST_RATE = 1e6
-"""Hz; beyond, ticks of today cannot be told apart in doubles."""
+"""Hz; beyond, ticks of today cannot be distinguished in doubles."""
 
 SETTINGS = ("_rate_", "_timeout_", "_margin_", "_simulator_")
 

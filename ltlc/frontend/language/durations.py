@@ -1,4 +1,4 @@
-"""What a number and a unit are in nanoseconds, exactly."""
+"""Durations with a unit in nanoseconds, exactly."""
 
 from __future__ import annotations
 

@@ -196,7 +196,7 @@ def _list_of(array: Input) -> object:
 
 
 def of_elements(checker: Checker, node: syntax.Comparison, left: Value, right: Value) -> Help:
-    """What can be said of elements in the place of a comparison with an array."""
+    """What can be said of elements in place of a comparison with an array."""
     said, relation = checker.written(node), Relation(node.operator.text.replace("!=", "=="))
     help = f"say which elements: `any({said})` or `all({said})`"
     fixes = said_of("any", checker, node), said_of("all", checker, node)
@@ -208,5 +208,5 @@ def of_elements(checker: Checker, node: syntax.Comparison, left: Value, right: V
 
 
 def said_of(quantifier: str, checker: Checker, node: syntax.Node) -> Fix:
-    """The mend that says `node` of `any`, or of `all`, elements."""
+    """The fix that says `node` of `any`, or of `all`, elements."""
     return around(f"write `{quantifier}({checker.written(node)})`", node.span, f"{quantifier}(", ")")

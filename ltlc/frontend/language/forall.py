@@ -23,7 +23,7 @@ _VARIABLE = re.compile(r"\{(\w+)\}")
 
 
 def written_out(checker: Checker, tree: syntax.SyntaxTree) -> syntax.SyntaxTree:
-    """`tree` with each `forall` as the properties that it stands for; what is wrong with it is reported."""
+    """`tree` with each `forall` as the properties that it stands for; its errors are reported."""
     commands: list[syntax.Command] = []
     count = 0
     for command in tree.commands:
@@ -60,7 +60,7 @@ def _copies(
 
 
 def _with(names: Mapping[str, str], node: Any) -> Any:
-    """`node`, or a tuple of nodes, with `names` in the place of their variables."""
+    """`node`, or a tuple of nodes, with `names` in place of their variables."""
     if isinstance(node, tuple):
         return tuple(_with(names, each) for each in node)
     if isinstance(node, syntax.Reference):

@@ -1,7 +1,7 @@
 """`?` in properties: the places of numbers and durations that are to be found, and what is put there.
 
-A value stands in the place of its `?` as a name does in that of a variable of `forall`: several values make as many
-properties, which are told apart by it.
+A value stands in place of its `?` as a name does in that of a variable of `forall`: several values make as many
+properties, which are distinguished by it.
 """
 
 from __future__ import annotations
@@ -118,7 +118,7 @@ def filled(parameter: Parameter, value: str | Nanoseconds, written: str) -> synt
 
 
 def _with(span: Span, value: syntax.Node, node: Any) -> Any:
-    """`node`, or a tuple of nodes, with `value` in the place of the parameter at `span`."""
+    """`node`, or a tuple of nodes, with `value` in place of the parameter at `span`."""
     if isinstance(node, tuple):
         return tuple(_with(span, value, each) for each in node)
     if isinstance(node, syntax.Parameter) and node.span == span:

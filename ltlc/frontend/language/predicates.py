@@ -155,7 +155,7 @@ class _Predicates:
         return None
 
     def _boolean(self, node: syntax.Node, context: Context) -> Built | None:
-        """A value in the place of a predicate: a boolean."""
+        """A value in place of a predicate: a boolean."""
         found = value(self.checker, node)
         if found is None:
             return None

@@ -17,7 +17,7 @@ class Requirements:
         self.ids: dict[str, Span] = {}
 
     def of(self, command: syntax.PropertyCommand) -> Requirement | None:
-        """The requirement that `command` states, if it states one; what is wrong with it is reported."""
+        """The requirement that `command` states, if it states one; its errors are reported."""
         text = " ".join(_comments(self.checker.source, command))
         given: dict[str, syntax.Entry] = {}
         for entry in (entry for line in command.attributes for entry in line.entries):

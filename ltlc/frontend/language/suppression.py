@@ -73,7 +73,7 @@ def suppress(
 ) -> list[Diagnostic]:
     """`diagnostics` without those that a comment in the file suppresses, and a note for each that suppresses none.
 
-    None for a code that is told on demand, unless `pedantic` says that it was asked for.
+    None for a code that is reported on demand only, unless `pedantic` says that it was asked for.
     """
     source = specification.source
     asked = suppressions(source, [p.whole() for p in specification.properties])

@@ -242,7 +242,7 @@ def value_in(message: str, types: MessageTypes) -> str:
 def values_of(message: str, types: MessageTypes) -> list[tuple[str, str]]:
     """The paths in a message that lead to values, those of all elements of an array included, with their kinds.
 
-    Those at the top come first, and times last; a header is left out, and what stands for no field at all.
+    Those at the top come first, and times last; a header is omitted, and what stands for no field at all.
     """
     found = list(_values(message, types, in_each=False))
     return sorted(found, key=lambda value: (value[0].endswith("sec"), value[0].count(".")))

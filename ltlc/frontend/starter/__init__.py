@@ -73,7 +73,7 @@ def starter(topics: Sequence[Topic], types: MessageTypes, origin: str, bag: str 
     lines = [*_comment(head), ""]
     lines += [line for section in sections for line in (*section.lines, "")]
     lines += [line for rule, names in _together(sections) for line in _rule(rule, rule.label, names, used)]
-    lines += ["", "# Left out:", *(line for each in left_out for line in _comment(each))] if left_out else []
+    lines += ["", "# Omitted:", *(line for each in left_out for line in _comment(each))] if left_out else []
     text = layout(Source("", "\n".join(lines)))
     assert isinstance(text, str)
     return text
@@ -86,11 +86,11 @@ def _recipe(topic: Topic, types: MessageTypes) -> Recipe | str:
     if topic.is_silent:
         return "no message on it was recorded"
     if not is_topic(topic.name):
-        return "no topic can be called so"
+        return "the name is not a valid topic"
     if ", " in topic.type:
-        return "messages of several types come on it"
+        return "it has messages of several types"
     if topic.type not in types.messages:
-        return "the type is not known; `--msg-path` makes the messages of a package or a bag known"
+        return "the type is unknown; `--msg-path` adds the messages of a package or a bag"
     return recipe_for(topic.type, types)
 
 

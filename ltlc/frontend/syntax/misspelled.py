@@ -83,7 +83,7 @@ def _is_defined(text: str, written: str) -> bool:
 
 
 def _apart(text: str, span: Span, word: str) -> str:
-    """`word` with blanks where in the place of `span` it would touch what is not a bracket or a comma."""
+    """`word` with blanks where in place of `span` it would touch what is not a bracket or a comma."""
     left = word[0].isalpha() and re.match(r"[^\s(,]", text[max(0, span.start - 1) : span.start])
     right = word[-1].isalpha() and re.compile(r"[^\s(),]").match(text, span.end)
     return f"{' ' if left else ''}{word}{' ' if right else ''}"

@@ -101,7 +101,7 @@ def explain(situation: Situation) -> Diagnostic:
     expected = expectation(situation.expected)
     message = f"{situation.found} cannot stand here"
     if situation.expected:
-        return situation.report("LTL001", message, label=f"here {expected} can stand")
+        return situation.report("LTL001", message, label=f"expected {expected}")
     return situation.report("LTL001", message, label="the property ends before this")
 
 
@@ -129,12 +129,12 @@ def _attributes(at: Situation) -> Diagnostic | None:
     opener = next((token for token in at.waiting if token.terminal == "ATTRIBUTES"), None)
     if opener is None:
         is_behind = at.previous is not None and at.previous.terminal == "]" and "ATTRIBUTES" in at.expected
-        message = f"a property has to follow its attributes, not {at.found}"
+        message = f"attributes must be followed by a property, not {at.found}"
         return at.report("LTL006", message, help=form) if is_behind and "decl" not in at.expected else None
     word = at.previous and _UNQUOTED.match(at.source.text, at.previous.span.start)
     if word and at.token.span.start < word.end():
         help = write(writing(Span(*word.span()), f'"{word.group()}"', is_certain=True))
-        return diagnostic("LTL001", at.source, Span(*word.span()), f"`{word.group()}` has to be a string", help=help)
+        return diagnostic("LTL001", at.source, Span(*word.span()), f"`{word.group()}` must be a string", help=help)
     if "]" in at.expected:
         return at.report("LTL005", f"`[` is not closed before {at.found}", Label(opener.span, "opened here"), help=form)
     return at.report("LTL006", f"{at.found} cannot stand in attributes", help=form)
@@ -147,7 +147,7 @@ def _id_as_label(at: Situation) -> Diagnostic | None:
     if at.token.terminal != ":" or label is None or at.source.text[label.end() : at.token.span.start].strip():
         return None
     help = write(writing(Span(label.start(), at.token.span.end), f'[id "{label.group()}"]\n'))
-    message = f"`{label.group()}` is no label: it has letters, digits and `_`; an id stands in attributes"
+    message = f"`{label.group()}` is not a label: labels have letters, digits and `_`; an id is an attribute"
     return diagnostic("LTL001", at.source, Span(*label.span()), message, help=help)
 
 
@@ -162,30 +162,30 @@ def _label_in_forall(at: Situation) -> Diagnostic | None:
     after = at.token.span.end + len(text[at.token.span.end :]) - len(text[at.token.span.end :].lstrip(" \t"))
     label = Span(forall.start(), forall.start()), f"{name.text}: "
     fix = Fix(title, (label, (Span(name.span.start, after), "")), is_certain=True)
-    return at.report("LTL018", "the label stands before `forall`", help=Help(title, (fix,)))
+    return at.report("LTL018", "the label comes before `forall`", help=Help(title, (fix,)))
 
 
 def _next_in_forall(read: Sequence[str]) -> str:
     if not read:
-        return "variables with commas between them, then `in`, stand here"
-    return f"`{'{' if read == ['in'] else ':'}` has to stand before this"
+        return "expected variables separated by commas, then `in`"
+    return f"expected `{'{' if read == ['in'] else ':'}` before this"
 
 
 def _forall_names(at: Situation) -> Diagnostic | None:
     """What is wrong among the names over which a `forall` goes."""
     form = f"the form is `{FORMS['forall']}`"
     if at.token.terminal == "}" and at.previous and at.previous.terminal == "{":
-        return at.report("LTL018", "the set is empty: `forall` would say nothing", help=form)
+        return at.report("LTL018", "the set is empty: `forall` would have no property", help=form)
     if at.token.terminal == "STRING" and at.token.text.isidentifier():
         help = write(writing(at.place, at.token.text, is_certain=True))
-        return at.report("LTL018", f"{at.found} is a string, where a name stands", help=help)
+        return at.report("LTL018", f"{at.found} is a string, but a name is needed here", help=help)
     if at.token.terminal == "NAME":
         return at.report(
             "LTL002", f"a comma is missing before {at.found}", help=Help(form, (_after_previous(at, ","),))
         )
     if at.previous and at.previous.terminal == "NAME":
         return None
-    return at.report("LTL018", f"a name has to stand here, not {at.found}", help=form)
+    return at.report("LTL018", f"expected a name here, not {at.found}", help=form)
 
 
 def _braces(at: Situation) -> Diagnostic | None:
@@ -193,8 +193,10 @@ def _braces(at: Situation) -> Diagnostic | None:
     if not at.begins_value or name is None:
         return None
     whole = writing(Span(*name.span()), name[1])
-    help = Help(f"for a whole name {whole.title}, for a part of one `{name[0]}_battery`", (whole,))
-    return at.report("LTL018", f"`{name[0]}` is no value: braces put the variable of a `forall` into a name", help=help)
+    help = Help(f"for a whole name {whole.title}, for a part of a name write `{name[0]}_battery`", (whole,))
+    return at.report(
+        "LTL018", f"`{name[0]}` is not a value: braces insert the variable of a `forall` into a name", help=help
+    )
 
 
 def _after_previous(at: Situation, text: str, *, is_certain: bool = False) -> Fix:
@@ -235,7 +237,9 @@ def _keyword_as_name(at: Situation) -> Diagnostic | None:
 def _no_name(source: Source, keyword: Token) -> Diagnostic:
     fix = writing(keyword.span, f"my_{keyword.text}")
     message = f"`{keyword.text}` is a keyword and cannot be a name"
-    return diagnostic("LTL008", source, keyword.span, message, help=Help(f"`my_{keyword.text}` could be one", (fix,)))
+    return diagnostic(
+        "LTL008", source, keyword.span, message, help=Help(f"use another, such as `my_{keyword.text}`", (fix,))
+    )
 
 
 def _chained_comparison(at: Situation) -> Diagnostic | None:
@@ -243,7 +247,7 @@ def _chained_comparison(at: Situation) -> Diagnostic | None:
         return None
     first = Label(at.read[-1].span, "the comparison is complete here")
     help = "compare twice: `a < b and b < c`"
-    return at.report("LTL013", f"comparisons do not chain: {at.found} follows a comparison", first, help=help)
+    return at.report("LTL013", f"comparisons cannot be chained: {at.found} follows a comparison", first, help=help)
 
 
 def _chained_since(at: Situation) -> Diagnostic | None:
@@ -251,7 +255,7 @@ def _chained_since(at: Situation) -> Diagnostic | None:
     if at.token.terminal != "since" or first is None or first.terminal == "(":
         return None
     help = "put one of them in parentheses: `(p since q) since r` or `p since (q since r)`"
-    return at.report("LTL013", "`since` does not chain", Label(first.span, "the first one"), help=help)
+    return at.report("LTL013", "`since` cannot be chained", Label(first.span, "the first one"), help=help)
 
 
 def _not_in(at: Situation) -> Diagnostic | None:
@@ -265,7 +269,7 @@ def _not_in(at: Situation) -> Diagnostic | None:
     if value is not None:
         edits = (Span(value.start(1), value.start(1)), "not "), (Span(at.previous.span.start, at.token.span.start), "")
         fixes = (Fix(f"write `not {value[1]} in`", edits, is_certain=True),)
-    return at.report("LTL001", "`not` stands before the value, not before `in`", help=Help(text, fixes))
+    return at.report("LTL001", "`not` comes before the value, not before `in`", help=Help(text, fixes))
 
 
 def _missing_value(at: Situation) -> Diagnostic | None:
@@ -273,14 +277,14 @@ def _missing_value(at: Situation) -> Diagnostic | None:
         return None
     before = f"`{at.source.text[at.previous.span.start : at.previous.span.end]}`"
     if at.previous.terminal == "=" and at.token.terminal == "/":
-        help = f"a signal is declared: `decl {at.read[-2].text} /TOPIC TYPE.FIELD`"
-        return at.report("LTL006", f"after {before} a value has to follow, not a topic", help=help)
+        help = f"declare a signal: `decl {at.read[-2].text} /TOPIC TYPE.FIELD`"
+        return at.report("LTL006", f"expected a value after {before}, not a topic", help=help)
     form = _form(at)
     what = "a property" if at.previous.terminal in FORMS or "always" in at.expected else "a value"
     what = "a duration" if at.previous.terminal in ("WITHIN_FIRST", "within", "for") else what
-    message = f"after {before} {what} has to follow, not {at.found}"
+    message = f"expected {what} after {before}, not {at.found}"
     if at.token.terminal == END:
-        message = f"{what} has to follow {before}, but the file ends"
+        message = f"expected {what} after {before}, but the file ends"
     return at.report("LTL006", message, help=f"the form is `{form}`" if form else "")
 
 
@@ -292,7 +296,7 @@ def _missing_comma(at: Situation) -> Diagnostic | None:
     if at.token.terminal == END or at.token.terminal in ("decl", "model", "object", "SETTING", ")", ":", "="):
         message = f"`{opener.text}` lacks an argument before {at.found}"
         return at.report("LTL006", message, label, help=f"the form is `{form}`")
-    message = f"a comma is missing before {at.found}: the arguments of `{opener.text}` stand apart"
+    message = f"a comma is missing before {at.found}: separate the arguments of `{opener.text}`"
     help = Help(f"the form is `{form}`", (_after_previous(at, ","),))
     return at.report("LTL002", message, label, label="expected `,` before this", help=help)
 
@@ -319,7 +323,7 @@ def _definition_in_model(at: Situation) -> Diagnostic | None:
     is_first = skip_blank(text, colon.span.end) == name.span.start
     if is_first or text[at.token.span.end :].lstrip()[:1] in ("/", "~"):
         return None
-    message, label = f"the model has to end with `;` before `{name.text}`", Label(model.span, "the model begins here")
+    message, label = f"the model must end with `;` before `{name.text}`", Label(model.span, "the model begins here")
     help = "write `;` after its last attribute"
     return diagnostic("LTL007", at.source, name.span, message, secondary=(label,), help=help)
 
@@ -328,7 +332,7 @@ def _missing_semicolon(at: Situation) -> Diagnostic | None:
     if ";" not in at.expected:
         return None
     model = next(t for t in at.waiting if t.terminal == "model")
-    message = f"the model has to end with `;` before {at.found}"
+    message = f"the model must end with `;` before {at.found}"
     fixes = (_after_previous(at, " ;", is_certain=True),) if at.token.terminal in _COMMANDS else ()
     help = Help("write `;` after its last attribute", fixes)
     return at.report("LTL007", message, Label(model.span, "the model begins here"), help=help)
@@ -340,9 +344,9 @@ def _incomplete_command(at: Situation) -> Diagnostic | None:
         return None
     form = FORMS.get(opener.terminal, f"{opener.text} = VALUE")
     needed = "a coordinate" if at.begins_value else expectation(at.expected - {"+", "-"})
-    message = f"{needed} has to stand here, not {at.found}"
+    message = f"expected {needed} here, not {at.found}"
     if at.token.terminal == END:
-        message = f"{needed} has to follow, but the file ends"
+        message = f"expected {needed}, but the file ends"
     return at.report("LTL006", message, Label(opener.span), help=f"the form is `{form}`")
 
 
@@ -416,5 +420,5 @@ def expectation(expected: Set[str]) -> str:
 
 def too_deep(source: Source, span: Span, limit: int) -> Diagnostic:
     """The place from which on a property is nested deeper than `limit`."""
-    help = "a property of several simpler ones says more when it fails"
+    help = "several simpler properties say more when one fails"
     return diagnostic("LTL015", source, span, f"the property is nested more than {limit} deep", help=help)

@@ -87,7 +87,7 @@ def parse_with_tokens(source: Source) -> tuple[syntax.SyntaxTree, list[Token], l
 class Expectation:
     """What can stand at a place: terminals, and the tokens before it of the command there, which begins at `start`.
 
-    Tokens that a completed part has taken up are left out.
+    Tokens that a completed part has taken up are omitted.
     """
 
     terminals: frozenset[str]

@@ -58,7 +58,7 @@ class BooleanLiteral(Node):
 
 @dataclass(frozen=True, slots=True)
 class Range(Node):
-    """`start:stop`, between the brackets of a slice; None where an end is left out."""
+    """`start:stop`, between the brackets of a slice; None where an end is omitted."""
 
     start: NumberLiteral | None
     stop: NumberLiteral | None
@@ -211,7 +211,7 @@ class Connective(Node):
 
 @dataclass(frozen=True, slots=True)
 class Interval(Node):
-    """`[start, end]`, in the place of the duration of a bound."""
+    """`[start, end]`, in place of the duration of a bound."""
 
     start: Node
     end: Node

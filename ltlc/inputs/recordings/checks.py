@@ -1,4 +1,4 @@
-"""What samples have to be like for monitors to be made for them: speeds not negative, arrays as long as others."""
+"""What monitors require of samples: speeds not negative, arrays of equal length."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a recording lacks of what a specification reads."""
+"""What a specification reads and a recording lacks."""
 
 from __future__ import annotations
 

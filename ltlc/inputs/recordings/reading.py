@@ -21,7 +21,7 @@ class Stamp(Enum):
 class ReadOptions:
     """Of bags: the clock, and folders with definitions of messages that neither the bag nor ROS 2 Jazzy has.
 
-    A reader may leave out rows before `since` and after `until`, in ns; None is no limit.
+    A reader may omit rows before `since` and after `until`, in ns; None is no limit.
     """
 
     stamp: Stamp = Stamp.LOG

@@ -1,4 +1,4 @@
-"""What all formats of recordings share: rows, values, and what can be wrong with them."""
+"""What all formats of recordings share: rows, values, and their possible errors."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`ltlc.check`: what is wrong with a specification before it ever runs."""
+"""`ltlc.check`: finds mistakes in a specification before it ever runs."""
 
 from __future__ import annotations
 

@@ -168,7 +168,7 @@ def _encodings(
 def _recordings(
     paths: Sequence[str | Path], specification: Specification, answers: Sequence[Answer], encodings: Sequence[Encoding]
 ) -> tuple[tuple[tuple[Recorded, ...], ...], list[Diagnostic]]:
-    """What each recording shows, and what is to be said about them."""
+    """What each recording shows, and the findings about them."""
     if not paths:
         return (), []
     from ltlc.analysis.comparison.recorded import judge_recording  # brings the backends along

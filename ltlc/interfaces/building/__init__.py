@@ -1,1 +1,1 @@
-"""From monitors to what is written: the code of a target, and what the gate says of it."""
+"""From monitors to what is written: the code of a target, and the gate's answer about it."""

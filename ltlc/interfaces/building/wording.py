@@ -1,4 +1,4 @@
-"""What the gate says of a property, in words: a line about what was checked, and diagnostics about what failed."""
+"""The gate's answer about a property, in words: a line about what was checked, and diagnostics about what failed."""
 
 from __future__ import annotations
 

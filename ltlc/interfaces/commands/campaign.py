@@ -1,4 +1,4 @@
-"""`ltlc run` on several recordings: judged side by side, told in their order, kept in a table."""
+"""`ltlc run` on several recordings: judged side by side, reported in their order, kept in a table."""
 
 from __future__ import annotations
 
@@ -119,7 +119,7 @@ def _watched(
 class Remarks:
     """Diagnostics of many recordings: errors at once, others once each, with how many recordings have them.
 
-    Those that are `told` already, since all recordings have them, are left out.
+    Those that are `told` already, since all recordings have them, are omitted.
     """
 
     def __init__(self, told: Sequence[Diagnostic] = ()) -> None:

@@ -1,4 +1,4 @@
-"""`ltlc check`: what is wrong with specifications before they ever run."""
+"""`ltlc check`: finds mistakes in specifications before they ever run."""
 
 from __future__ import annotations
 
@@ -86,7 +86,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _check(path: Path, options: argparse.Namespace, ids: dict[str, str]) -> tuple[Check, int]:
-    """What is to be said of a file, after it is mended if that is asked for, and how often it was mended.
+    """What is to be said of a file, after it is fixed if that is asked for, and how often it was fixed.
 
     Those `ids` of requirements have been given, each in a file; its own are added. Raises SpotMissing and
     NotMendedError.
@@ -139,7 +139,7 @@ def _has_warnings(diagnostics: Sequence[Diagnostic]) -> bool:
 
 
 def _show(found: Check, options: argparse.Namespace, prefix: str) -> None:
-    """Diagnostics on stderr, and on stdout a line for each property, unless that is for what was mended."""
+    """Diagnostics on stderr, and on stdout a line for each property, unless that is for what was fixed."""
     _report(found.diagnostics, options.format)
     if not (options.quiet or (options.fix and STDIN in options.specifications)):
         for each in found.properties:

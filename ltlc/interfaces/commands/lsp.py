@@ -1,4 +1,4 @@
-"""`ltlc lsp`: what editors talk to."""
+"""`ltlc lsp`: the language server."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Mending specifications where one mend is certain: `ltlc check --fix` and `--diff`."""
+"""Fixing specifications where a fix is unambiguous: `ltlc check --fix` and `--diff`."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from ltlc.interfaces.commands.common import FINDING, OK, failure, report
 from ltlc.semantics.encodings import ENCODINGS
 
 ROUNDS = 100
-"""How often a text is read again: what a mend makes readable may need another."""
+"""How often a text is read again: what a fix makes readable may need another."""
 
 
 class NotMendedError(Exception):
@@ -24,7 +24,7 @@ class NotMendedError(Exception):
 
 
 def mend(path: Path, source: Source, options: argparse.Namespace) -> tuple[Source, int]:
-    """What of `source`, which was read from `path`, is left after all certain mends, and how many there were.
+    """What of `source`, which was read from `path`, is left after all certain fixes, and how many there were.
 
     The file is written if there were any, the standard input goes to stdout in any case; what was done is said on
     stderr. Raises NotMendedError.
@@ -54,7 +54,7 @@ def show_difference(path: Path, options: argparse.Namespace) -> int:
 
 
 def _mended(source: Source, options: argparse.Namespace) -> tuple[Source, list[str]]:
-    """`source` after all certain mends of what its text says, and each of them in words."""
+    """`source` after all certain fixes of what its text says, and each of them in words."""
     done: list[str] = []
     for _ in range(ROUNDS):
         _, found = load_text(source, options.msg_path, ENCODINGS[options.encoding], options.recording)

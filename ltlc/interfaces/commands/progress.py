@@ -1,4 +1,4 @@
-"""One line on the terminal that says how far a command is, for what takes longer than a moment."""
+"""One line on the terminal that shows the progress of a command that takes longer than a moment."""
 
 from __future__ import annotations
 

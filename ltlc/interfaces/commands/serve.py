@@ -1,4 +1,4 @@
-"""`ltlc serve`: a page in the browser to try properties on."""
+"""`ltlc serve`: a page in the browser for trying out properties."""
 
 from __future__ import annotations
 

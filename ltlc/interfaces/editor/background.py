@@ -31,7 +31,7 @@ class StoppedError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Analysed:
-    """All that is to be said of a file, and of each property, by its text, what its monitor can do."""
+    """All findings about a file, and of each property, by its text, what its monitor can do."""
 
     diagnostics: tuple[Diagnostic, ...]
     summaries: Mapping[str, str]

@@ -36,14 +36,14 @@ _CONTINUING = frozenset({"and", "or", "implies", "since", "within", "for", "in"}
 
 
 class Completions(NamedTuple):
-    """What may be written in the place of a span."""
+    """What may be written in place of a span."""
 
     span: Span
     suggestions: tuple[Suggestion, ...] = ()
 
 
 def completions(document: Document, offset: int) -> Completions:
-    """What may be written before `offset`, in the place of the beginning of a word that stands there."""
+    """What may be written before `offset`, in place of the beginning of a word that stands there."""
     before = document.text[:offset]
     line = before[before.rfind("\n") + 1 :]
     if comment := _COMMENT.match(line):
@@ -83,7 +83,7 @@ def _at_end(before: str, pattern: re.Pattern[str]) -> re.Match[str] | None:
 
 
 def _at(before: str, pattern: re.Pattern[str], found: Iterable[Suggestion]) -> Completions:
-    """`found`, each once, in the place of what `pattern` matches at the end of `before`."""
+    """`found`, each once, in place of what `pattern` matches at the end of `before`."""
     span = Span(len(before) - len(_begun(before, pattern)), len(before))
     return Completions(span, tuple({suggestion.text: suggestion for suggestion in found}.values()))
 

@@ -1,4 +1,4 @@
-"""What can be done about a finding: the mends that it brings, and a comment that says it is known."""
+"""What can be done about a finding: its fixes, and a comment that suppresses it."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ ABOUT_COMMENTS = "LTL691"
 
 
 def fixes(found: Diagnostic) -> Iterator[Fix]:
-    """The mends of `found`, then how to suppress it, where that can be done."""
+    """The fixes of `found`, then how to suppress it, where that can be done."""
     yield from found.fixes
     if found.primary is None or found.code == ABOUT_COMMENTS:
         return

@@ -1,4 +1,4 @@
-"""What is said of the place under the mouse."""
+"""The hover text for the place under the mouse."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is said to editors, as the data of their protocol: places become lines and units, kinds become its kinds."""
+"""Messages to editors, as data of their protocol: places become lines and units, kinds become its kinds."""
 
 from __future__ import annotations
 

@@ -45,7 +45,7 @@ def machine_picture(compiled: Compiled, trail: Trail | None, began: Nanoseconds,
     remark = ""
     if len(told.verdicts) > MOST_STATES:
         edges = [edge for edge in edges if edge.taken]
-        remark = f"Only the way that was taken is shown: the monitor has {len(told.verdicts)} states."
+        remark = f"Only the path taken is shown: the monitor has {len(told.verdicts)} states."
     return Picture(graph_svg(told.verdicts, edges, trail.state, name), named, remark)
 
 

@@ -100,9 +100,9 @@ def map_of(course: Course, series: Mapping[Expression, Series], began: Nanosecon
     head = f'<svg xmlns="http://www.w3.org/2000/svg" {size} class="map" font-family="sans-serif" font-size="11">'
     remarks = []
     if left_out:
-        remarks.append(f"Of {left_out + len(visits):,} points of the path, {len(visits):,} are drawn.")
+        remarks.append(f"{len(visits):,} of {left_out + len(visits):,} points of the path are drawn.")
     if len(crossings) > MOST_CROSSINGS:
-        remarks.append(f"Of {len(crossings):,} places where it enters or leaves a zone, {MOST_CROSSINGS} are marked.")
+        remarks.append(f"{MOST_CROSSINGS} of {len(crossings):,} places where it enters or leaves a zone are marked.")
     return Map("".join([head, *drawn, "</svg>"]), _described(course, visits, crossings, began), " ".join(remarks))
 
 

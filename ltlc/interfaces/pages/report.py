@@ -86,7 +86,7 @@ class PageReport:
         """Add a run, whose report has trails, with what was collected from it."""
         id_ = f"recording-{len(self._recordings)}"
         session = report.session
-        shown: dict[str, Any] = {"facts": "Nothing of it could be judged.", "cells": [], "cards": [], "left_out": ""}
+        shown: dict[str, Any] = {"facts": "No part of it could be judged.", "cells": [], "cards": [], "left_out": ""}
         remarks = [_remark(each) for each in report.diagnostics]
         if session is not None and session.began is not None and session.time is not None:
             shown = self._judged(_Run(id_, report, session, session.began, session.time, collected))
@@ -205,7 +205,7 @@ def _said(session: Session, track: Track) -> dict[str, str]:
 
 def _facts(run: _Run) -> str:
     span = f"From {seconds_text(run.began)} s to {seconds_text(run.ended)} s ({seconds_text(run.ended - run.began)} s)"
-    rate = "" if run.session.plan.rate is None else f", looked at {run.session.plan.rate:g} times a second"
+    rate = "" if run.session.plan.rate is None else f", sampled {run.session.plan.rate:g} times a second"
     damage = "; it is damaged, and was judged up to there" if run.report.is_damaged else ""
     return f"{span}, {_count(run.session.steps, 'step')}{rate}{damage}."
 
@@ -227,7 +227,7 @@ def machine_described(compiled: Compiled, trail: Trail) -> str:
     """The picture of a monitor in words, for those who cannot see it."""
     states = _count(len(compiled.machine.states), "state")
     edges = _count(len(trail.edges), "edge")
-    return f"The monitor has {states}; the run took {edges} of it, and ended in state {trail.state}."
+    return f"The monitor has {states}; this run took {edges} and ended in state {trail.state}."
 
 
 def _notes(drawn: Sequence[Panel], collected: Collector) -> Iterator[str]:
@@ -238,8 +238,8 @@ def _notes(drawn: Sequence[Panel], collected: Collector) -> Iterator[str]:
             if not series.count:
                 yield f"{printable(panel.title)}: no value was recorded."
             elif series.bucket > 1:
-                samples = f"{series.count:,} samples. Of each {series.bucket:,} that follow one another"
-                kept = "the first, least, greatest and last one, and those where a limit is crossed"
+                samples = f"{series.count:,} samples. Of every {series.bucket:,} consecutive ones"
+                kept = "the first, the least, the greatest and the last, and those where a limit is crossed"
                 yield f"{printable(panel.title)}: {samples} the page has {kept}."
         yield from map(printable, panel.remarks)
 
@@ -253,4 +253,4 @@ def _left_out(trail: Trail) -> Iterator[str]:
     counts = (len(trail.changes), len(trail.spans), len(trail.deadlines))
     for count, what in zip(counts, ("changes of verdict", "episodes", "deadlines"), strict=True):
         if count > MOST_MARKS:
-            yield f"Of {count:,} {what}, the first {MOST_MARKS:,} are drawn."
+            yield f"The first {MOST_MARKS:,} of {count:,} {what} are drawn."

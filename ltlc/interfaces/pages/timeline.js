@@ -28,7 +28,7 @@ class Timeline extends Signals {
     };
     const lanes = [lane(BAND, this.drawVerdicts, "verdict")];
     if (this.depths) lanes.push(lane(this.depths * (BAR + 2), this.drawEpisodes, "episodes"));
-    if (this.content.deadlines.length) lanes.push(lane(BAR, this.drawDeadlines, "owed, and when it is due"));
+    if (this.content.deadlines.length) lanes.push(lane(BAR, this.drawDeadlines, "obligation open, and its deadline"));
     for (const panel of this.content.panels) {
       const draw = { number: this.drawNumbers, boolean: this.drawBoolean, string: this.drawString, news: this.drawNews };
       const made = lane(HEIGHTS[panel.kind], draw[panel.kind], panel.title, this.legend(panel));

@@ -1,1 +1,1 @@
-"""`ltlc serve`: a page to try properties on, and the small server behind it; nothing leaves the machine."""
+"""`ltlc serve`: a page for trying out properties, and the small server behind it; nothing leaves the machine."""

@@ -1,4 +1,4 @@
-"""What is answered to the page: findings, verdicts of a run, explanations, encodings side by side; as JSON."""
+"""Answers to the page: findings, verdicts of a run, explanations, encodings side by side; as JSON."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ OF_A_COMPARISON = Budget(4, 512)
 
 
 def _check(question: Question) -> dict[str, Any]:
-    """What is to be said about the text, what its properties say, and which signals they read."""
+    """The findings about the text, what its properties say, and which signals they read."""
     specification, diagnostics = _analysed(question) if question.analyses else _read(question)
     if specification is None:
         return {"diagnostics": documents(diagnostics), "properties": None, "signals": [], "rate": None}

@@ -1,4 +1,4 @@
-"""What the page asks: a specification's text, and what is to be done with it, read from JSON that anybody may send."""
+"""Requests of the page: a specification's text, and what to do with it, read from untrusted JSON."""
 
 from __future__ import annotations
 

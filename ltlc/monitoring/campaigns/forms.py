@@ -1,4 +1,4 @@
-"""What is told of many recordings on stdout: as text while they arrive, as one JSON document, as one JUnit report."""
+"""The report on many recordings, on stdout: as text while they arrive, as one JSON document, as one JUnit report."""
 
 from __future__ import annotations
 

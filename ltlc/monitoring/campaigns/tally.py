@@ -1,4 +1,4 @@
-"""What a campaign has shown so far, in numbers: how often each property came out how, and where it failed first."""
+"""The results of a campaign so far, in numbers: the outcomes of each property, and where it failed first."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Arrays in a column: parts of them, and how many elements of each are told apart by a mask."""
+"""Arrays in a column: parts of them, and how many elements of each are distinguished by a mask."""
 
 from __future__ import annotations
 

@@ -29,7 +29,7 @@ class Known:
     is_decided: whether the verdict is permanent
     begins: by which message it is kept, as messages are counted
     stepped: the number of its last step
-    owed, owed_at: the step at which its verdict changed last, and the time, if something is owed
+    owed, owed_at: the step at which its verdict changed last, and the time, if an obligation is open
     next: when a clock comes due next; `dues` are when each does
     latest: by reading, the value in its last message
     """

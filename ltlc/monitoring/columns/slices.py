@@ -50,7 +50,7 @@ class Taken:
     """What a block has done: the `parts`, by number the messages that slices take by themselves, and what came of it.
 
     Something was `owed` in so many slices before it. `steps` has the number of the step that each message is, or, if it
-    is none, of that after it. `opened` has the messages from which on something is owed.
+    is none, of that after it. `opened` has the messages from which on an obligation is open.
     """
 
     messages: Messages
@@ -292,7 +292,7 @@ class BySlices:
         return Moment(max(0, step), time, by_time=not key % 2)
 
     def _changes(self, taken: Taken, until: int, part: Part) -> Iterator[tuple[Places, Places, Places]]:
-        """Where in slices something is owed from a step on, or no more, and when, up to some place."""
+        """Where in slices an obligation is open from a step on, or no more, and when, up to some place."""
         runs, outputs = part.followed.runs, self._tables.machine.outputs
         for places, steps, before, after in part.followed.groups.changes():
             change = (outputs[after] == OWED).astype(np.int64) - (outputs[before] == OWED)

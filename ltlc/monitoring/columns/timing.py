@@ -1,4 +1,4 @@
-"""What `ltlc run --timing` says: which way each property was judged, why, and what took how long."""
+"""What `ltlc run --timing` reports: how each property was judged, why, and how long it took."""
 
 from __future__ import annotations
 

@@ -33,7 +33,7 @@ from ltlc.specification.requirements import Requirement
 from ltlc.specification.specification import PropertySpecification, Specification
 
 Watcher = Callable[[Block], None]
-"""What is told of each block once it has been judged."""
+"""What is reported about each block once it has been judged."""
 
 
 @dataclass(frozen=True)

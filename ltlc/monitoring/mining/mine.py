@@ -130,7 +130,7 @@ def mine(
 
 
 def _ask(oracle: Oracle, recording: Kept, findings: Sequence[Finding], each: bool) -> list[Diagnostic]:
-    """Add to `findings` what `recording` says, and return nothing; or else what is wrong with it."""
+    """Add to `findings` what `recording` says, and return nothing; or else its errors."""
     searches = [(f, Search(0 if each else f.number, f.sought.values.last)) for f in findings if f.passes or each]
     while asked := [(finding, search) for finding, search in searches if not search.is_done]:
         trials = [Trial(finding.sought, number) for finding, search in asked for number in search.numbers()]

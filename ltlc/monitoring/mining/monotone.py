@@ -1,4 +1,4 @@
-"""Which way a property goes as its parameter grows: whether more runs satisfy it, or fewer.
+"""Whether more runs satisfy a property, or fewer, as its parameter grows.
 
 It is read off two trees of the same property with different values in that one place. A connective or a keyword hands
 on the way of its part or turns it round; where the parameter stands on both sides, or decides where a scope begins or

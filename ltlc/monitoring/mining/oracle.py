@@ -33,7 +33,7 @@ class Outcome(Enum):
     """What a recording says to a value: of several properties that have it, each has to pass."""
 
     PASSES = "passes"
-    """At its end the property holds: it is not violated, and nothing is owed."""
+    """At its end the property holds: it is not violated, and no obligation is open."""
     FAILS = "fails"
     NOT_STARTED = "not started"
 

@@ -1,4 +1,4 @@
-"""Where among numbered values the first is that passes, all after it passing, too."""
+"""Finds the first of numbered values that passes, where all later ones pass, too."""
 
 from __future__ import annotations
 

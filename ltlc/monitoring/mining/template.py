@@ -105,7 +105,7 @@ def _written(trials: Iterable[Trial]) -> dict[Span, str]:
 def load(
     path: Path, message_paths: Sequence[str], recordings: Sequence[Path] = ()
 ) -> tuple[Template | None, list[Diagnostic]]:
-    """The specification in the file at `path`, None if it has errors, and what is to be said about it.
+    """The specification in the file at `path`, None if it has errors, and the findings about it.
 
     The messages that `recordings` define are known, too.
     """
@@ -141,13 +141,13 @@ def _has_errors(diagnostics: Iterable[Diagnostic]) -> bool:
 
 
 def _with_samples(tree: syntax.SyntaxTree, found: Sequence[Parameter], which: int) -> syntax.SyntaxTree:
-    """`tree` with the smaller or the larger sample in the place of each parameter."""
+    """`tree` with the smaller or the larger sample in place of each parameter."""
     copies = {each: [replace(filled(each, SAMPLES[each.role][which], ""), names={})] for each in found}
     return with_copies(tree, copies)
 
 
 def _sought(parameter: Parameter, smaller: Specification, larger: Specification) -> Sought | Diagnostic:
-    """What is sought in the place of `parameter`, or why nothing can be."""
+    """What is sought in place of `parameter`, or why nothing can be."""
     pairs = zip(smaller.properties, larger.properties, strict=True)
     of_it = [(one, other) for one, other in pairs if one.span == parameter.command.span]
     sample, _ = of_it[0]

@@ -63,7 +63,7 @@ def written(
     rate: float | None = None,
     timeout: Nanoseconds | None = None,
 ) -> Sequence[WrittenInC | Difference]:
-    """What is written of each of `properties` in a header and a source file, or what is wrong with these.
+    """What is written of each of `properties` in a header and a source file, or their errors.
 
     `rate`, in Hz, and `timeout` are those of their specification.
     """
@@ -252,7 +252,7 @@ class WrittenInC:
                 raise not_understood(call)
 
     def _at_first(self, place: str) -> str:
-        """What is handed on with the session in the place of what is with a message: there is no news."""
+        """What is handed on with the session in place of what is with a message: there is no news."""
         news = self.definitions.places([self.pace.place(each) for each in self.struct.inputs if isinstance(each, New)])
         return "false" if place in news else place.replace("signals->", f"monitors->{self.pace.name}.")
 

@@ -35,7 +35,7 @@ class Token:
 
 
 def tokens(text: str) -> Iterator[Token]:
-    """The tokens of `text`, comments left out, as they are asked for.
+    """The tokens of `text`, comments omitted, as they are asked for.
 
     What another compiler could take apart in another way is a token that no file has: lines that go on, trigraphs, a
     carriage return alone, a comment without an end.

@@ -1,4 +1,4 @@
-"""The node is guarded by its parent: if it hangs or dies, its verdicts are told."""
+"""The node is guarded by its parent, which reports its verdicts if it hangs or dies."""
 
 from __future__ import annotations
 

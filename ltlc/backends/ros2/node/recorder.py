@@ -1,4 +1,4 @@
-"""What was judged, in a file that `ltlc run` reads."""
+"""Records the judged messages in a file that `ltlc run` reads."""
 
 from __future__ import annotations
 

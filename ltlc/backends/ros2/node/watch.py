@@ -1,4 +1,4 @@
-"""Runs: messages are judged as they come, changes of verdict are told."""
+"""Runs: messages are judged as they arrive, changes of verdict are reported."""
 
 from __future__ import annotations
 

@@ -255,7 +255,7 @@ def change_of_clocks(times: NDArray[np.int64], before: Nanoseconds | None) -> in
 def watched(blocks: Iterator[Block], extent: tuple[Nanoseconds, Nanoseconds] | None) -> Iterator[Block]:
     """`blocks`, with time alone where the recording begins and ends, which may be with topics that nobody reads.
 
-    An end that is more than a year away from the rows is of another clock, and is left out. Raises RecordingError where
+    An end that is more than a year away from the rows is of another clock, and is omitted. Raises RecordingError where
     `blocks` do.
     """
     if extent is None:

@@ -120,7 +120,7 @@ class Storage(Protocol):
         ...
 
     def batches(self, topics: Collection[str], since: Nanoseconds, until: Nanoseconds) -> Iterator[Batch]:
-        """The messages of `topics` in the order of the file; those outside the times may be left out.
+        """The messages of `topics` in the order of the file; those outside the times may be omitted.
 
         The data of a batch are gone when the next is taken. Raises RecordingError after those that could be read.
         """

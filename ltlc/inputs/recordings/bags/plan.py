@@ -50,7 +50,7 @@ class Absence:
 class TopicReader:
     """Reads signals from the messages of a topic, as they are `defined`.
 
-    Its rows have the times of their headers if it `has_stamps`; `unstamped` counts those messages that were left out
+    Its rows have the times of their headers if it `has_stamps`; `unstamped` counts those messages that were omitted
     because their headers have no time.
     """
 
@@ -233,7 +233,7 @@ class Plan:
 
 
 def absolute(name: str) -> str:
-    """The name of a topic as specifications have it, also where a recorder has left out the first slash."""
+    """The name of a topic as specifications have it, also where a recorder has omitted the first slash."""
     return f"/{name.lstrip('/')}"
 
 

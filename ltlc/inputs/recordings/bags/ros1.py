@@ -142,7 +142,7 @@ def _store(connection: Connection) -> Any:
 
 
 def _unlike(part: Any) -> Any:
-    """A part of definitions, with another name for headers: in `std_msgs/msg/Header` rosbags leaves out `seq`."""
+    """A part of definitions, with another name for headers: in `std_msgs/msg/Header` rosbags omits `seq`."""
     if isinstance(part, list | tuple):
         return type(part)(map(_unlike, part))
     return f"{part}_" if part == "std_msgs/msg/Header" else part

@@ -59,7 +59,7 @@ class SqliteStorage:
         return database
 
     def _refuse_views(self, database: sqlite3.Connection) -> None:
-        """Raise sqlite3.DataError if something is no table, which could make rows for ever."""
+        """Raise sqlite3.DataError if something is no table, which could make rows forever."""
         kinds = database.execute("select distinct type from sqlite_master where name in ('topics', 'messages')")
         if [kind for (kind,) in kinds if kind != "table"]:
             raise sqlite3.DataError("its topics or messages are not a table")
