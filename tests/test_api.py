@@ -111,7 +111,7 @@ def test_what_is_owed_when_a_run_is_finished_is_told() -> None:
     run.step({"speed": 3}, 0.5)
     found = run.finish()
     assert found.exit_code == 3
-    assert str(found["soon"]).startswith("soon: presumably violated; still open since 0 s (step 0)")
+    assert str(found["soon"]).startswith("soon: presumably violated; unmet since +0 s (step 0)")
     assert "0.5 s left" in found.text()
 
 

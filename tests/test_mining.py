@@ -605,27 +605,27 @@ def test_the_report_has_the_property_to_paste_and_the_moment_that_decides(
         == """\
 line 3 of props.txt (top):
   top: never v > 2.5
-  decided by a.csv: with 2.4999999999999996 it is violated at 1 s (step 1)
+  decided by a.csv: with 2.4999999999999996 it is violated at +1 s (step 1)
     Error at line 3 of props.txt (top[2.4999999999999996]):
       never v > 2.4999999999999996
     Failing state:
       v: 2.5
     Because:
-      v > 2.4999999999999996: true, comparing 2.5 with 2.4999999999999996
-    At 1 s (step 1).
+      v > 2.4999999999999996: true, 2.5 > 2.4999999999999996 by 4.44089e-16
+    At +1 s (step 1).
   passes in 2 recordings
 
 line 5 of props.txt:
   eventually on within 2 s
-  decided by a.csv: with 1.999999999 s it is violated at 2 s (after step 1)
+  decided by a.csv: with 1.999999999 s it is violated at +2 s (after step 1)
     Error at line 5 of props.txt (line 5[1.999999999 s]):
       eventually on within 1.999999999 s
     Failing state:
       on: false
     Because:
       more than 1999999999 ns since the beginning: true
-    Until then still open since 0 s (step 0): eventually on within 1.999999999 s
-    At 2 s (after step 1).
+    Unmet since +0 s (step 0): eventually on within 1.999999999 s
+    At +2 s (after step 1).
   passes in 2 recordings
 """
     )
@@ -666,7 +666,7 @@ def test_a_file_that_cannot_be_written_is_told_before_anything_is_read(
 def test_what_has_no_value_is_told_in_words(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     main(["mine", "props.txt", "other.csv", "never.csv", "a.csv"])
     shown = capsys.readouterr().out
-    assert "no value passes: in never.csv, even with 878400 h it is presumably violated; still open since 0 s" in shown
+    assert "no value passes: in never.csv, even with 878400 h it is presumably violated; unmet since +0 s" in shown
     assert "not started in other.csv: " in shown
     assert shown.endswith("  not examined, as no value would pass: a.csv\n")
 
