@@ -118,11 +118,10 @@ class Later(Course):
             if self.is_out:
                 self._try(due)
                 continue
-            began = self._began
+            began, lasts = self._began, self.violations[-1].until is None
             self._expire(Moment(self.steps - 1, due, by_time=True))
-            self._settle(due)
-            if self.is_out and began < NEVER and not self.property.ages:
-                # What is held has violated it again: so it will, as long as it is held.
+            if self._settle(due) and lasts and began < NEVER and not self.property.ages:
+                # What is held has violated it once more: so it will, as long as it is held.
                 self._last += max(0, time - due) // (due + 1 - began) * (due + 1 - began)
 
     def _try(self, time: Nanoseconds) -> None:
@@ -166,8 +165,8 @@ class Later(Course):
         for age in self.property.ages:
             setattr(self.monitor, age.due, getattr(last, age.due))
 
-    def _settle(self, time: Nanoseconds) -> None:
-        """See whether the instant is one of a violation, or is the first one after it."""
+    def _settle(self, time: Nanoseconds) -> bool:
+        """Whether the instant violates the property; it may be the first one, or the first one after that."""
         last = self.violations[-1]
         self.is_out = self.verdict is Verdict.VIOLATED
         if self.is_out:
@@ -177,6 +176,7 @@ class Later(Course):
             self.decided_at = None  # it goes on
         elif self.verdict is not Verdict.PRESUMABLY_VIOLATED and last.until is None:
             last.until = time
+        return self.is_out
 
     def _failure(self, before: Before, moment: Moment, values: Sequence[Value]) -> Failure:
         """Of later violations no more is kept than when they are."""

@@ -79,8 +79,8 @@ def _because(condition: Condition) -> dict[str, Any]:
         "right": json_value(condition.right),
         "by": distance(condition),
     }
-    if condition.lasted is not None:
-        told["lasted"] = seconds(condition.lasted)
+    if condition.age is not None:
+        told["age"] = seconds(condition.age)
     if condition.element is not None:
         index, values = condition.element
         found = {name: json_value(value) for name, value in values}

@@ -67,9 +67,9 @@ class Condition:
     """A condition of a property at a step; `left` and `right` are what it compares.
 
     They include its margin, and are None where a boolean is not compared to anything.
-    The `relation` is that of numbers in order, or empty. What it asks of time has
-    `lasted` so many ns, which are written into the `wording`. If one `element` of
-    arrays makes it hold or fail, that is its index and, by name of each, its value.
+    The `relation` is that of numbers in order, or empty. If it asks for an `age`, that
+    is in ns, unless it has just passed the bound. If one `element` of arrays makes it
+    hold or fail, that is its index and, by the name of each array, its value.
     """
 
     text: str
@@ -77,8 +77,7 @@ class Condition:
     left: Value = None
     right: Value = None
     relation: str = ""
-    wording: str = ""
-    lasted: int | None = None
+    age: int | None = None
     element: tuple[int, tuple[tuple[str, Value], ...]] | None = None
 
 
@@ -117,14 +116,14 @@ class Clock:
     There is a condition in `texts` for each of its `bounds`, ascending. Whether that
     holds is `late` from when on the clock is past the bound. A count has no bounds: the
     clock moves with what occurs at a step, before the step asks for its one condition.
-    How long the clock has run is written into the `wording`.
+    That of an age (`is_age`) counts from the last message.
     """
 
     due: str
     texts: tuple[str, ...]
     bounds: tuple[int, ...]
     late: bool
-    wording: str = ""
+    is_age: bool = False
 
     def passed(self, passed: int, before: int, after: int) -> int:
         """How many bounds have passed once its due time changes; none, if it starts."""

@@ -15,7 +15,6 @@ from ltlc.runtime.properties import (
     MonitoredProperty,
 )
 from ltlc.runtime.sampling import Value
-from ltlc.runtime.times import NEVER
 
 Before = tuple[int, Sequence[int]]
 """The state of a monitor before a step, and when each of its clocks was due."""
@@ -56,18 +55,12 @@ def because(
 def _of_clock(clock: Clock, due: int, time: int, passed: int) -> Condition:
     """What a clock that is `due` then, so many bounds of which have passed, decides.
 
-    How long it has run, the text says unless it has just come due.
+    An age that has just passed its bound is not told.
     """
-    lasted = None
-    if clock.wording and due < NEVER and time > due + 1:
-        lasted = time - due + clock.bounds[passed]
-    is_late = due < time
-    return Condition(
-        clock.texts[passed],
-        is_late == clock.late,
-        wording=clock.wording,
-        lasted=lasted,
-    )
+    age = None
+    if clock.is_age and time > due + 1:
+        age = time - due + clock.bounds[passed]
+    return Condition(clock.texts[passed], (due < time) == clock.late, age=age)
 
 
 def with_element(

@@ -82,7 +82,7 @@ def failure_text(property_: MonitoredProperty, failure: Failure, scale: Scale) -
         lines.append(f"  {name}: {named_text(property_, name, value)}")
     if failure.because:
         lines.append("Because:")
-        lines += [f"  {condition_text(each)}" for each in failure.because]
+        lines += [f"  {condition_text(property_, c)}" for c in failure.because]
     if since is not None:
         lines.append(f"Unmet since {_owed(property_, since, scale)}")
     clock = f", {seconds_text(failure.time)} by the clock" if scale.has_clock else ""
@@ -109,20 +109,20 @@ def named_text(property_: MonitoredProperty, name: str, value: Value) -> str:
 _OPPOSITES = {"<": ">=", "<=": ">", ">": "<=", ">=": "<"}
 
 
-def condition_text(condition: Condition) -> str:
+def condition_text(property_: MonitoredProperty, condition: Condition) -> str:
     """What a condition was, what it compared, and by how much the sides differ."""
     parts = [value_text(condition.holds)]
-    if condition.left is not None and (compared := _compared(condition)):
+    if condition.left is not None and (compared := _compared(property_, condition)):
         parts.append(compared)
-    if condition.lasted is not None:
-        parts.append(condition.wording.format(span_text(condition.lasted)))
+    if condition.age is not None:
+        parts.append(f"the age is {span_text(condition.age)}")
     if condition.element is not None:
         index, values = condition.element
         parts += [f"{name}[{index}] is {value_text(value)}" for name, value in values]
     return f"{condition.text}: {', '.join(parts)}"
 
 
-def _compared(condition: Condition) -> str:
+def _compared(property_: MonitoredProperty, condition: Condition) -> str:
     left, right = value_text(condition.left), value_text(condition.right)
     difference = distance(condition)
     by = f" by {difference:.6g}" if difference else ""
@@ -131,7 +131,12 @@ def _compared(condition: Condition) -> str:
         return f"{left} {relation if is_so else _OPPOSITES[relation]} {right}{by}"
     if difference is None:
         return f"comparing {left} with {right}"
-    return f"{left} and {right} differ{by}" if by else ""
+    if not by:
+        return ""
+    name = condition.text.partition(" == ")[0]
+    if name in property_.constants:
+        return f"it is {named_text(property_, name, condition.left)}"
+    return f"{left} differs from {right}{by}"
 
 
 def distance(condition: Condition) -> float | None:

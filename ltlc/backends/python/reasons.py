@@ -14,7 +14,7 @@ from ltlc.compiler import Compiled
 from ltlc.program import lowering
 from ltlc.program.properties import Words, words
 from ltlc.semantics.timed_atoms import Age, Clock, Historically
-from ltlc.semantics.trackers import Tracker, trackers_of
+from ltlc.semantics.trackers import trackers_of
 from ltlc.specification import expressions as e
 from ltlc.specification.atoms import Atom
 from ltlc.specification.functions import Function
@@ -71,7 +71,8 @@ class Reasons:
         for name, tracker in zip(names, clocks, strict=False):  # those of counts come after them
             late = isinstance(tracker.subject, Clock | Historically)
             texts, bounds = tuple_of(map(literal, tracker.atoms)), tuple_of(map(str, tracker.bounds))
-            yield Group("Clock(", (literal(name), texts, bounds, str(late), literal(_wording(tracker))), ")")
+            more = ["True"] if isinstance(tracker.subject, Age) else []
+            yield Group("Clock(", (literal(name), texts, bounds, str(late), *more), ")")
         for name, count in zip(names[len(clocks) :], self.compiled.specification.counts(), strict=True):
             yield Group("Clock(", (literal(name), tuple_of([literal(count.name)]), "()", "False"), ")")
 
@@ -94,19 +95,6 @@ class Reasons:
         for name, constants_ in found.items():
             entries = (f"{value:g}: {literal(constant)}" for value, constant in constants_.items())
             yield f"{literal(name)}: {{{', '.join(entries)}}}"
-
-
-def _wording(tracker: Tracker) -> str:
-    """How it is said for how long the clock of a tracker has run."""
-    match tracker.subject:
-        case Age():
-            return "the age is {}"
-        case Historically():
-            return "it has held for {}"
-        case Clock():
-            return "it has been {}"
-        case _:
-            return "it last held {} ago"
 
 
 def _arrays(condition: e.Condition) -> tuple[list[e.Expression], bool]:

@@ -94,7 +94,7 @@ def add_recordings(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--absolute",
         action="store_true",
-        help="in text, show times of the recording's clock in full, not since the beginning of the recording",
+        help="in text, show times in full, as in the recording, not since its beginning",
     )
 
 
