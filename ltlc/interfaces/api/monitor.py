@@ -57,8 +57,8 @@ def monitor(
       robot.velocity: 2.5
     Because:
       more than 1 s since the first "robot.velocity > 2" without "robot.velocity < 1": true
-    Until then still open since 0.1 s (step 1): eventually robot.velocity < 1 within 1 s
-    At 1.100000001 s (after step 1).
+    Unmet since +0.1 s (step 1): eventually robot.velocity < 1 within 1 s
+    At +1.1 s (after step 1).
 
     A `str` is the text of a specification, a `pathlib.Path` a file; otherwise as `LiveRun`. `budget` is what the
     translation of each property may use. Raises UnusableInput and SpotMissing.

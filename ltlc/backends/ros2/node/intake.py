@@ -177,7 +177,8 @@ class Listener:
     @property
     def remarks(self) -> list[str]:
         """What is wrong, or may be, with what is heard on this topic."""
-        remarks = [f"{self.full_name} is also published as {t}" for t in self.foreign]
+        also = [f"{self.full_name} is also published as {t}" for t in self.foreign]
+        remarks = [self.misfit] if self.misfit else also
         if self._reliability is ReliabilityPolicy.BEST_EFFORT:
             remarks.append(f"{self.full_name} is published without delivery guarantee")
         if not self._is_published:
