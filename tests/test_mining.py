@@ -378,7 +378,7 @@ def test_of_a_forall_that_starts_in_part_the_rest_is_told(tmp_path: Path) -> Non
     path = recording(tmp_path / "run.csv", "r1", [[1], [4]])
     finding = found(tmp_path, "forall r in {r1, r2}: never r > ?", path)
     assert finding.trial.text == "4"
-    assert finding.not_started == {path: ["no message on /r2", "0 steps"]}
+    assert finding.not_started == {path: ["the recording has no column `r2`", "0 steps"]}
 
 
 def test_a_search_ends_at_the_first_number_that_passes_wherever_the_hints_are() -> None:
@@ -613,6 +613,7 @@ line 3 of props.txt (top):
     Because:
       v > 2.4999999999999996: true, 2.5 > 2.4999999999999996 by 4.44089e-16
     At +1 s (step 1).
+    1 violation, for 1 s
   passes in 2 recordings
 
 line 5 of props.txt:
@@ -626,6 +627,7 @@ line 5 of props.txt:
       more than 1999999999 ns since the beginning: true
     Unmet since +0 s (step 0): eventually on within 1.999999999 s
     At +2 s (after step 1).
+    1 violation, at an instant
   passes in 2 recordings
 """
     )

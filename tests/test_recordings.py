@@ -435,7 +435,7 @@ def test_an_unusable_recording_gives_no_verdict(tmp_path: Path) -> None:
 def test_a_damaged_recording_is_judged_up_to_the_damage(tmp_path: Path) -> None:
     report = judged(tmp_path, DISTANCE, "time,robot.distance.sign\n0,0.5\n1,x\n")
     assert (report.exit_code, report.is_damaged, [d.code for d in report.diagnostics]) == (2, True, ["LTL803"])
-    assert "close: violated at 0 s" in report.text()
+    assert "close: violated at +0 s" in report.text()
 
 
 @pytest.mark.parametrize(

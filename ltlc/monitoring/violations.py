@@ -287,7 +287,7 @@ class Spread:
     def text(self) -> str:
         """The same in a line."""
         if not any(self.lasted):
-            return f"{counted(self.count, 'violation')}, at single instants"
+            return "1 violation, at an instant" if self.count == 1 else f"{self.count} violations, each at an instant"
         if self.count == 1:
             return f"1 violation, for {span_text(self.lasted[0])}"
         shortest, longest, median = self.lasted[0], self.lasted[-1], self.lasted[self.count // 2]

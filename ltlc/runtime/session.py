@@ -128,7 +128,9 @@ class Session:
         """How a reader is told the times of the run."""
         if self.times is Times.ABSOLUTE:
             return Scale()
-        return Scale(self.beginning, has_clock=self.times is Times.BOTH)
+        # What begins at 0 has one time only.
+        has_clock = self.times is Times.BOTH and self.beginning != 0
+        return Scale(self.beginning, has_clock=has_clock)
 
     @property
     def unseen(self) -> dict[str, int]:

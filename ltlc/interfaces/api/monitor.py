@@ -23,7 +23,7 @@ from ltlc.runtime.properties import Change
 from ltlc.runtime.rows import ByRows, Route
 from ltlc.runtime.sampling import Value
 from ltlc.runtime.session import Session
-from ltlc.runtime.times import seconds_text
+from ltlc.runtime.times import Times, seconds_text
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.verdicts import Verdict
 from ltlc.specification.expressions import Signal
@@ -210,7 +210,9 @@ class LiveRun:
         """Judges a session to which samples of `columns` come; what they tell nothing of comes in itself."""
         signals = self._judge.signals.values()
         untold = {signal.name for signal in signals if not any(name in columns for name in _family(signal))}
-        return ByRows(Session(self._judge.plan({*columns, *untold})))
+        session = Session(self._judge.plan({*columns, *untold}))
+        session.times = Times.BOTH
+        return ByRows(session)
 
 
 @dataclass(frozen=True, slots=True)
