@@ -23,7 +23,7 @@ from ltlc.monitoring.columns import arrays, bits, follow, kept, tables, threshol
 from ltlc.monitoring.columns import session as columns_session
 from ltlc.monitoring.columns.prepared import prepare_all
 from ltlc.monitoring.columns.session import ByBlocks
-from ltlc.monitoring.violations import JudgedTrack, all_violations, can_recur
+from ltlc.monitoring.later import JudgedTrack, all_violations, can_recur
 from ltlc.runtime import documents, reports
 from ltlc.runtime.episodes import Episodes
 from ltlc.runtime.properties import MonitoredProperty

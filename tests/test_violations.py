@@ -12,7 +12,7 @@ from stepping import from_text
 
 from ltlc.backends.python.load import load_plan
 from ltlc.monitoring.judging.run import Judge, RunReport
-from ltlc.monitoring.violations import MOST, all_violations
+from ltlc.monitoring.later import MOST, all_violations
 from ltlc.runtime.rows import ByRows
 from ltlc.runtime.session import Session
 from ltlc.semantics.verdicts import Verdict

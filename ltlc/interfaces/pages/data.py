@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from ltlc.inputs.recordings.trails import Trail
 from ltlc.interfaces.pages.panels import Drawing, Panel
 from ltlc.interfaces.pages.series import Series
-from ltlc.monitoring.violations import Violation
+from ltlc.monitoring.later import Violation
 from ltlc.runtime.reports import moment_text, printable
 from ltlc.runtime.session import Session
 from ltlc.runtime.times import Scale, span_text

@@ -22,7 +22,8 @@ from ltlc.interfaces.pages.maps import Course, courses, map_of
 from ltlc.interfaces.pages.panels import Panel, panels
 from ltlc.interfaces.pages.series import Collector
 from ltlc.monitoring.judging.run import RunReport
-from ltlc.monitoring.violations import all_violations, violation_text
+from ltlc.monitoring.judging.violations import violation_text
+from ltlc.monitoring.later import all_violations
 from ltlc.runtime import reports
 from ltlc.runtime.reports import printable
 from ltlc.runtime.session import Session

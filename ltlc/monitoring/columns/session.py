@@ -18,7 +18,7 @@ from ltlc.monitoring.columns.slices import BySlices, refusal
 from ltlc.monitoring.columns.ticks import MOST, Seen, block_of, times_of
 from ltlc.monitoring.columns.tracks import Forward, Stretch, count_invalid, has_ages, stretch, take_together
 from ltlc.monitoring.columns.walk import hear, walk, walk_on
-from ltlc.monitoring.violations import is_followed, later_of
+from ltlc.monitoring.later import is_followed, later_of
 from ltlc.runtime.properties import MonitoredProperty
 from ltlc.runtime.rows import ByRows
 from ltlc.runtime.sampling import Derived, Reading, Window

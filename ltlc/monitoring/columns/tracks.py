@@ -19,7 +19,7 @@ from ltlc.monitoring.columns.prepared import Prepared
 from ltlc.monitoring.columns.series import Steps, UnsupportedError
 from ltlc.monitoring.columns.tables import Tables
 from ltlc.monitoring.columns.values import not_numbers, predicate, value
-from ltlc.monitoring.violations import is_followed
+from ltlc.monitoring.later import is_followed
 from ltlc.runtime.courses import Course
 from ltlc.runtime.episodes import Episodes
 from ltlc.runtime.properties import Moment, Opening, Scope

@@ -18,7 +18,7 @@ from ltlc.monitoring.columns.bits import unpack
 from ltlc.monitoring.columns.kept import KeptLetters
 from ltlc.monitoring.columns.series import Steps
 from ltlc.monitoring.columns.tracks import Stretch, has_ages, values_at
-from ltlc.monitoring.violations import Later
+from ltlc.monitoring.later import Later
 from ltlc.runtime.courses import Course
 from ltlc.runtime.sampling import New
 from ltlc.runtime.times import NEVER

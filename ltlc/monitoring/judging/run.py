@@ -23,7 +23,8 @@ from ltlc.inputs.recordings.trails import Trail, Trailing
 from ltlc.monitoring.columns.prepared import Prepared, prepare_all
 from ltlc.monitoring.columns.session import ByBlocks
 from ltlc.monitoring.judging.part import Part
-from ltlc.monitoring.violations import JudgedTrack, can_recur, violations_report, violations_text
+from ltlc.monitoring.judging.violations import violations_report, violations_text
+from ltlc.monitoring.later import JudgedTrack, can_recur
 from ltlc.runtime import documents, junit, reports, sampling
 from ltlc.runtime.properties import MonitoredProperty
 from ltlc.runtime.rows import ByRows

@@ -9,9 +9,9 @@ from textwrap import indent
 from typing import Any
 
 from ltlc.frontend.language.parameters import Role
+from ltlc.monitoring.judging.violations import spread
 from ltlc.monitoring.mining.mine import Failure, Finding, Mined, Result
 from ltlc.monitoring.mining.template import Trial
-from ltlc.monitoring.violations import spread
 from ltlc.runtime import documents, reports
 from ltlc.runtime.reports import printable
 from ltlc.runtime.times import seconds
