@@ -295,7 +295,7 @@ class Judge:
             for watcher in watchers:
                 watcher(block)
             if session.is_over:
-                return
+                break
         end = session.time if part.until is None else part.until
         if end is not None:
             ByRows(by_blocks.session).advance(end)
