@@ -84,6 +84,11 @@ class Recorded:
         """None: it has no messages."""
         return {}
 
+    @property
+    def beginning(self) -> None:
+        """That of its first row."""
+        return
+
     def absence(self, name: str) -> str:
         """Every signal is there."""
         return f"it has no {name}"

@@ -23,8 +23,10 @@ from ltlc.monitoring.columns import arrays, bits, follow, kept, tables, threshol
 from ltlc.monitoring.columns import session as columns_session
 from ltlc.monitoring.columns.prepared import prepare_all
 from ltlc.monitoring.columns.session import ByBlocks
-from ltlc.runtime import reports
+from ltlc.monitoring.later import JudgedTrack, all_violations, can_recur
+from ltlc.runtime import documents, reports
 from ltlc.runtime.episodes import Episodes
+from ltlc.runtime.properties import MonitoredProperty
 from ltlc.runtime.rows import ByRows
 from ltlc.runtime.session import Session
 from ltlc.runtime.tracking import Observer, Track
@@ -342,8 +344,13 @@ def judged(drawn: Drawn, observe: Callable[[], Observer] | None = None) -> tuple
     given = {name for part in drawn.parts for row in part for name in row.values} | set(KINDS) | {"v", "w"}
     given -= set(PARTS) - {"robot.position.x"}
     plan = load_plan(compiled, specification, given)
-    reference = ByRows(Session(plan, observe=observe))
-    fast = ByBlocks(Session(plan, observe=observe), prepare_all(compiled, specification.source))
+    recurring = {each.specification.label for each in compiled if can_recur(each)}
+
+    def track(property_: MonitoredProperty, keep: bool, observer: Observer | None) -> Track:
+        return JudgedTrack(property_, keep, observer, property_.label in recurring)
+
+    reference = ByRows(Session(plan, observe=observe, make=track))
+    fast = ByBlocks(Session(plan, observe=observe, make=track), prepare_all(compiled, specification.source))
     wanted = [s.name for s in plan.signals if s.name in given]
     found = blocks(drawn.parts, wanted)
     for block in found:
@@ -353,6 +360,8 @@ def judged(drawn: Drawn, observe: Callable[[], Observer] | None = None) -> tuple
     for session in (reference.session, fast.session):
         if session.time is not None:
             ByRows(session).advance(session.time + 5 * 10**8)
+            for each in session.tracks:
+                each.hold(session.time)
     return reference.session, fast
 
 
@@ -363,7 +372,7 @@ def trails(session: Session) -> list[str]:
 
 def state(session: Session) -> list[Any]:
     """All that a session knows and reports."""
-    figures = [reports.figure(track) for track in session.tracks if track.verdict is Verdict.VIOLATED]
+    figures = [reports.figure(session, track) for track in session.tracks if track.verdict is Verdict.VIOLATED]
     samples = {name: (list(map(repr, each.values)), list(each.times)) for name, each in session.sampler.samples.items()}
     known = [
         (
@@ -378,7 +387,7 @@ def state(session: Session) -> list[Any]:
         for track in session.tracks
     ]
     return [
-        repr(reports.document("", session)),
+        repr(documents.document("", session)),
         reports.summary(session),
         figures,
         samples,
@@ -388,6 +397,7 @@ def state(session: Session) -> list[Any]:
         session.time,
         session.is_over,
         session.sampler.not_measured,
+        [repr(all_violations(track)) for track in session.tracks],
     ]
 
 

@@ -44,6 +44,12 @@ def judged(document: Mapping[str, Any]) -> dict[str, Any]:
     return {key: value for key, value in document.items() if key != "recording"}
 
 
+def first_only(document: dict[str, Any]) -> dict[str, Any]:
+    """The same without the violations after the first, which steps do not look for."""
+    properties = [{key: value for key, value in each.items() if key != "violations"} for each in document["properties"]]
+    return {**document, "properties": properties}
+
+
 @pytest.mark.parametrize("seed", range(6))
 def test_rows_and_steps_have_the_verdicts_of_the_same_rows_in_a_file(seed: int, tmp_path: Path) -> None:
     drawn = Draw(Random(seed)).drawn()
@@ -56,7 +62,7 @@ def test_rows_and_steps_have_the_verdicts_of_the_same_rows_in_a_file(seed: int, 
     changes = [change for time, values in came for change in live.step(values, time_ns=time)]
     stepped, (of_file, of_rows) = live.finish(), ltlc.run_each(drawn.text, [path, rows])
     assert judged(of_rows.document()) == judged(of_file.document())
-    assert judged(stepped.document()) == judged(of_file.document())
+    assert first_only(judged(stepped.document())) == first_only(judged(of_file.document()))
     assert live.verdicts == {**live.verdicts, **{change.property.label: change.current for change in changes}}
 
 
@@ -111,7 +117,7 @@ def test_what_is_owed_when_a_run_is_finished_is_told() -> None:
     run.step({"speed": 3}, 0.5)
     found = run.finish()
     assert found.exit_code == 3
-    assert str(found["soon"]).startswith("soon: presumably violated; still open since 0 s (step 0)")
+    assert str(found["soon"]).startswith("soon: presumably violated; unmet since +0 s (step 0)")
     assert "0.5 s left" in found.text()
 
 
@@ -131,7 +137,8 @@ def test_rows_without_times_are_taken_where_no_property_needs_them() -> None:
     run.step({"speed": 3})
     assert run.violations[0].decided is not None
     assert run.violations[0].decided.step == 1
-    assert judged(ltlc.run(SLOW, [{"speed": 1}, {"speed": 3}]).document()) == judged(run.finish().document())
+    whole = ltlc.run(SLOW, [{"speed": 1}, {"speed": 3}])
+    assert first_only(judged(whole.document())) == first_only(judged(run.finish().document()))
 
 
 POSES = "decl speed /speed Float64.data\nobject robot /pose PoseStamped\n"

@@ -54,7 +54,7 @@ def test_findings_are_a_table_with_their_places_and_examples(cells: list[Any]) -
 
 def test_verdicts_and_failing_states_are_there_without_frames_and_scripts(cells: list[Any]) -> None:
     html = outside_frames(cells[1]._repr_html_())
-    assert "<td>slow</td><td>violated</td><td>4.1 s (step 41)</td>" in html
+    assert "<td>slow</td><td>violated</td><td>+4.1 s (step 41)</td>" in html
     assert "Failing state:\n  v: 2.05" in html
     assert "<iframe" not in html
 

@@ -148,7 +148,7 @@ def test_colcon_builds_it_and_its_tests_replay_the_runs_and_judge_recordings(ins
     failed = {str(case.get("name")): str(f.text) for case in cases for f in case.findall("failure")}
     bad, drive = (f"test_recordings_satisfy_the_properties[{name}]" for name in ("bad.jsonl", "drive.csv"))
     assert set(failed) <= {bad, drive}  # where there is no ltlc, what only ltlc can read is skipped
-    assert "At 0.200000001 s (after step 1)" in failed[bad]
+    assert "At +0.2 s (after step 1)" in failed[bad]
     runs = json.loads((installed / "src" / "watch_monitor" / "test" / "runs.json").read_text(encoding="utf-8"))
     assert len(runs) == 3
     assert sum(map(len, runs)) == sum("as_those_that_were_judged" in str(case.get("name")) for case in cases) > 10

@@ -22,7 +22,7 @@ from ltlc.backends import c, emit, rust
 from ltlc.program.expressions import Held, News
 from ltlc.program.machine import Excused
 from ltlc.program.types import DOUBLE
-from ltlc.runtime import reports
+from ltlc.runtime import documents, junit, reports
 from ltlc.runtime.times import SECOND
 from ltlc.semantics.verdicts import Verdict
 
@@ -226,8 +226,8 @@ def test_what_came_before_a_property_began_is_reported_with_its_verdict() -> Non
     [track] = run.tracks
     told = "began at +3.5 s, when /on first spoke; 12 messages on /v and 1 message on /w before that were not judged"
     assert told in reports.summary(run.session)
-    assert told in reports.junit("run", run.session)
-    [said] = reports.document("run", run.session)["properties"]
+    assert told in junit.junit("run", run.session)
+    [said] = documents.document("run", run.session)["properties"]
     assert (said["began_at"], said["began_at_ns"]) == (3.5, 3_500_000_000)
     assert said["not_judged"] == {"/v": 12, "/w": 1}
     assert track.steps == 2
@@ -237,7 +237,7 @@ def test_a_property_that_missed_nothing_says_nothing_of_its_beginning() -> None:
     run = session(f"{DECLARED}p: never v > 3\n")
     run.message(SECOND, "/v", [1.0])
     assert "began" not in reports.summary(run.session)
-    [said] = reports.document("run", run.session)["properties"]
+    [said] = documents.document("run", run.session)["properties"]
     assert said.keys().isdisjoint({"began_at", "not_judged"})
 
 

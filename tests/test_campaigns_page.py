@@ -60,7 +60,7 @@ def test_it_says_where_each_property_fails_with_the_first_violations_side_by_sid
     assert text[start + 1 : start + 15] == [
         *(f"drives/fast{number}.csv" for number in range(4)),
         "violated at",
-        *["1 s (step 1)"] * 4,
+        *["+1 s (step 1)"] * 4,
         "speed",
         *["2.5"] * 4,
     ]

@@ -122,8 +122,8 @@ def test_a_violation_is_printed_as_in_the_paper(drives: Drives) -> None:
     velocity = found["decided_at"]["values"]["robot.velocity"]
     for line in (
         f"Error at line {found['line']} of properties.txt (stop_at_sign):",
-        "robot.distance.stop_sign > 1: true, comparing ",
-        "Until then still open since ",
+        "robot.distance.stop_sign > 1: true, ",
+        "Unmet since +",
         "Failing state:",
         f"robot.velocity: {velocity}",
         "The episode opened",

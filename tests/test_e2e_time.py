@@ -255,7 +255,7 @@ def test_a_node_that_wakes_late_says_so(folder: Path, network: Network, send: Se
         os.kill(node.child, signal.SIGUSR1)
         network.wait_until(lambda: ("answered", "violated") in node.changes, "the violation")
         network.wait_until(
-            lambda: "told 1 time late" in getattr(network.statuses.get("watch_monitor: answered"), "message", ""),
+            lambda: "reported late 1 time" in getattr(network.statuses.get("watch_monitor: answered"), "message", ""),
             "a status",
         )
         assert node.end() == 1
@@ -263,8 +263,8 @@ def test_a_node_that_wakes_late_says_so(folder: Path, network: Network, send: Se
     begun = max(time for time, row in recorded(recording) if row)  # of two topics, either may have been heard first
     assert found["decided_at"]["time_ns"] == begun + 1000 * MS + 1
     assert (found["told_late"]["times"], found["told_late"]["longest"] > 0.02) == (1, True)
-    assert "told 1 time late, by " in node.log
-    assert "told 1 time late, by " in node.junit.read_text(encoding="utf-8")
+    assert "reported late 1 time, by " in node.log
+    assert "reported late 1 time, by " in node.junit.read_text(encoding="utf-8")
 
 
 def test_what_was_received_in_time_settles_what_a_late_node_looks_at_later(

@@ -378,7 +378,7 @@ def test_of_a_forall_that_starts_in_part_the_rest_is_told(tmp_path: Path) -> Non
     path = recording(tmp_path / "run.csv", "r1", [[1], [4]])
     finding = found(tmp_path, "forall r in {r1, r2}: never r > ?", path)
     assert finding.trial.text == "4"
-    assert finding.not_started == {path: ["no message on /r2", "0 steps"]}
+    assert finding.not_started == {path: ["the recording has no column `r2`", "0 steps"]}
 
 
 def test_a_search_ends_at_the_first_number_that_passes_wherever_the_hints_are() -> None:
@@ -605,27 +605,29 @@ def test_the_report_has_the_property_to_paste_and_the_moment_that_decides(
         == """\
 line 3 of props.txt (top):
   top: never v > 2.5
-  decided by a.csv: with 2.4999999999999996 it is violated at 1 s (step 1)
+  decided by a.csv: with 2.4999999999999996 it is violated at +1 s (step 1)
     Error at line 3 of props.txt (top[2.4999999999999996]):
       never v > 2.4999999999999996
     Failing state:
       v: 2.5
     Because:
-      v > 2.4999999999999996: true, comparing 2.5 with 2.4999999999999996
-    At 1 s (step 1).
+      v > 2.4999999999999996: true, 2.5 > 2.4999999999999996 by 4.44089e-16
+    At +1 s (step 1).
+    1 violation, for 1 s
   passes in 2 recordings
 
 line 5 of props.txt:
   eventually on within 2 s
-  decided by a.csv: with 1.999999999 s it is violated at 2 s (after step 1)
+  decided by a.csv: with 1.999999999 s it is violated at +2 s (after step 1)
     Error at line 5 of props.txt (line 5[1.999999999 s]):
       eventually on within 1.999999999 s
     Failing state:
       on: false
     Because:
       more than 1999999999 ns since the beginning: true
-    Until then still open since 0 s (step 0): eventually on within 1.999999999 s
-    At 2 s (after step 1).
+    Unmet since +0 s (step 0): eventually on within 1.999999999 s
+    At +2 s (after step 1).
+    1 violation, at an instant
   passes in 2 recordings
 """
     )
@@ -666,7 +668,7 @@ def test_a_file_that_cannot_be_written_is_told_before_anything_is_read(
 def test_what_has_no_value_is_told_in_words(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     main(["mine", "props.txt", "other.csv", "never.csv", "a.csv"])
     shown = capsys.readouterr().out
-    assert "no value passes: in never.csv, even with 878400 h it is presumably violated; still open since 0 s" in shown
+    assert "no value passes: in never.csv, even with 878400 h it is presumably violated; unmet since +0 s" in shown
     assert "not started in other.csv: " in shown
     assert shown.endswith("  not examined, as no value would pass: a.csv\n")
 

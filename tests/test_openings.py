@@ -24,7 +24,8 @@ from ltlc.base import mends
 from ltlc.base.diagnostics import Severity
 from ltlc.base.source import Source
 from ltlc.frontend.language import load_text
-from ltlc.runtime.reports import figure, property_report
+from ltlc.runtime.reports import failure_text
+from ltlc.runtime.times import Scale
 from ltlc.semantics.certificate import Certificate
 from ltlc.semantics.denotation import satisfies
 from ltlc.semantics.encodings import EPISODE
@@ -182,16 +183,18 @@ def violated(text: str, *steps: tuple[bool, bool, float]) -> Any:
 
 def test_a_report_shows_the_value_at_the_opening() -> None:
     track = violated(DOCK, (False, False, 9.0), (True, False, 2.0), (True, False, 2.05), (True, False, 3.0))
-    lines = figure(track).splitlines()
+    assert track.decided_at is not None
+    lines = failure_text(track.property, track.decided_at, Scale(0)).splitlines()
     assert "  @{d, opening}: 2.0" in lines
-    assert "  d <= @{d, opening} + 0.1: false, comparing 3.0 with 2.1" in lines
-    assert property_report(track)["decided_at"]["values"]["@{d, opening}"] == 2.0
+    assert "  d <= @{d, opening} + 0.1: false, 3.0 > 2.1 by 0.9" in lines
+    assert dict(track.decided_at.values)["@{d, opening}"] == 2.0
 
 
 def test_two_scopes_of_a_property_are_told_apart_in_its_report() -> None:
     text = "(after x, always d > @{d, opening} - 1) and (always d < @{d, opening} + 10)"
     track = violated(text, (False, False, 1.0), (True, False, 5.0), (True, False, 4.0))
-    assert {"@{d, opening 1}", "@{d, opening}"} <= property_report(track)["decided_at"]["values"].keys()
+    assert track.decided_at is not None
+    assert {"@{d, opening 1}", "@{d, opening}"} <= dict(track.decided_at.values).keys()
 
 
 @pytest.mark.parametrize(

@@ -38,7 +38,7 @@ def drawn(folder: Path, property_: str, *rows: str) -> Map:
     collector = Collector({course.x: (), course.y: ()}, 10_000)
     judged = Judge(compiled, specification).judge(recorded(folder, *rows), [collector.take])
     assert judged.session is not None
-    return map_of(course, collector.series, judged.session.began or 0, judged.session.tracks[0])
+    return map_of(course, collector.series, judged.session.scale, judged.session.tracks[0])
 
 
 def test_zones_that_one_point_is_asked_of_share_a_map() -> None:

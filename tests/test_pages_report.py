@@ -20,6 +20,7 @@ from ltlc.interfaces.pages import report as pages
 from ltlc.interfaces.pages.machines import machine_picture
 from ltlc.interfaces.pages.report import PageReport
 from ltlc.monitoring.judging.run import Judge
+from ltlc.runtime.times import Scale
 
 DECLARATIONS = "decl v /v Float64.data\ndecl near /near Bool.data\n"
 SVG = "{http://www.w3.org/2000/svg}"
@@ -177,7 +178,7 @@ def test_the_way_that_was_taken_is_marked_in_the_picture(tmp_path: Path) -> None
     compiled, specification = from_text(DECLARATIONS + "always (near implies eventually v > 1 within 2 s)\n")
     recording = recorded(tmp_path, "0,0,false", "1,0,true", "9,0,false")
     report = Judge(compiled, specification, keep_trails=True).judge(recording)
-    picture = machine_picture(compiled[0], report.trails[0], 0, "p")
+    picture = machine_picture(compiled[0], report.trails[0], Scale(), "p")
     root = ElementTree.fromstring(picture.svg)
     groups = [group.get("class") or "" for group in root.findall(f"{SVG}g")]
     assert len([each for each in groups if each.startswith("edge") and each.endswith("taken")]) == 3
@@ -190,7 +191,7 @@ def test_of_an_edge_of_steps_and_one_of_time_only_the_one_that_was_taken_is_mark
     compiled, specification = from_text(DECLARATIONS + "always age(v) < 500 ms\n")
     recording = recorded(tmp_path, "0,0,false", "1,0,true")
     report = Judge(compiled, specification, keep_trails=True).judge(recording)
-    picture = machine_picture(compiled[0], report.trails[0], 0, "p")
+    picture = machine_picture(compiled[0], report.trails[0], Scale(), "p")
     ways = [
         group for group in ElementTree.fromstring(picture.svg).findall(f"{SVG}g") if "edge" in group.get("class", "")
     ]

@@ -59,8 +59,8 @@ def test_a_violation_fails_the_test_at_once_with_the_failing_state(run: Runs) ->
         "Failing state:",
         "  speed: 3.0",
         "Because:",
-        "  speed > 2: true, comparing 3.0 with 2.0",
-        "At 0.1 s (step 1).",
+        "  speed > 2: true, 3.0 > 2.0 by 1",
+        "At +0.1 s (step 1).",
     ])  # fmt: skip
     text = found.stdout.str()
     assert "step 2" not in text
@@ -107,7 +107,7 @@ def test_what_is_owed_at_the_end_fails_the_test_unless_that_is_allowed(run: Runs
         STOPS,
     )
     found.assert_outcomes(passed=1, failed=1)
-    found.stdout.fnmatch_lines(["At the end of the test:", "stops: presumably violated; still open since 0 s*"])
+    found.stdout.fnmatch_lines(["At the end of the test:", "stops: presumably violated; unmet since +0 s*"])
 
 
 def test_a_property_that_never_started_fails_the_test_and_a_misspelled_name_is_told(run: Runs) -> None:

@@ -168,7 +168,7 @@ def test_elements_that_are_nan_are_told_and_why_there_was_no_step(tmp_path: Path
     path.write_text("".join(f'{{"time": {t}, "scan": {scan}}}\n' for t, scan in enumerate(rows_)))
     report = run(*from_text("decl scan /scan LaserScan.ranges\nnear: never min(scan) < 0.15\n"), path)
     assert report.text().splitlines()[-1] == (
-        "near: violated at 3 s (step 1); 2 steps; 1 step left out: an expression had no value: scan was empty; "
+        "near: violated at +3 s (step 1); 2 steps; 1 step left out: an expression had no value: scan was empty; "
         "1 step left out: an expression had no value: all of scan was NaN; 4 elements of scan were NaN, no measurements"
     )
     [told] = json.loads(report.json())["properties"]
@@ -435,7 +435,7 @@ def test_an_unusable_recording_gives_no_verdict(tmp_path: Path) -> None:
 def test_a_damaged_recording_is_judged_up_to_the_damage(tmp_path: Path) -> None:
     report = judged(tmp_path, DISTANCE, "time,robot.distance.sign\n0,0.5\n1,x\n")
     assert (report.exit_code, report.is_damaged, [d.code for d in report.diagnostics]) == (2, True, ["LTL803"])
-    assert "close: violated at 0 s" in report.text()
+    assert "close: violated at +0 s" in report.text()
 
 
 @pytest.mark.parametrize(

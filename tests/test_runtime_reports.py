@@ -17,12 +17,13 @@ from ltlc.program.expressions import Literal
 from ltlc.program.lowering import condition as lowered_condition
 from ltlc.program.normal import positive
 from ltlc.program.properties import questions, words
-from ltlc.runtime import reports
+from ltlc.runtime import documents, junit, reports
 from ltlc.runtime.episodes import Episodes, latest
 from ltlc.runtime.properties import Condition, Moment, MonitoredProperty, Scope
 from ltlc.runtime.reasons import decisive
 from ltlc.runtime.rows import ByRows
 from ltlc.runtime.session import Plan, Session
+from ltlc.runtime.times import Scale
 from ltlc.semantics import denotation
 from ltlc.semantics.ltl import Atom
 from ltlc.semantics.verdicts import Verdict
@@ -43,7 +44,8 @@ def judged(text: str, *samples_: tuple[float, float]) -> ByRows:
 
 
 def figure(text: str, *samples_: tuple[float, float]) -> list[str]:
-    return reports.figure(judged(text, *samples_).tracks[0]).splitlines()
+    run = judged(text, *samples_)
+    return reports.figure(run.session, run.tracks[0]).splitlines()
 
 
 def section(lines: list[str], heading: str) -> list[str]:
@@ -61,56 +63,60 @@ def section(lines: list[str], heading: str) -> list[str]:
     ],
 )
 def test_an_error_names_line_file_and_label(text: str, place: str) -> None:
-    track = judged(text, (2.0, 0.0)).tracks[-1]
-    assert reports.figure(track).splitlines()[0] == place
+    run = judged(text, (2.0, 0.0))
+    assert reports.figure(run.session, run.tracks[-1]).splitlines()[0] == place
 
 
 def test_the_file_is_named_without_its_folder_as_in_the_node() -> None:
     run = ByRows(Session(load_plan(*from_text(AB + "never a > 1\n", "/home/somebody/props.txt"))))
     run.samples(0, ("a",), (2.0,))
-    assert reports.figure(run.tracks[0]).startswith("Error at line 3 of props.txt:\n")
+    assert reports.figure(run.session, run.tracks[0]).startswith("Error at line 3 of props.txt:\n")
 
 
 def test_a_violation_shows_both_sides_of_the_comparison_that_failed() -> None:
     lines = figure("never a - b > 0.5\n", (1.0, 1.0), (2.0, 1.25))
     assert section(lines, "Failing state:") == ["a: 2.0", "b: 1.25"]
-    assert section(lines, "Because:") == ["a - b > 0.5: true, comparing 0.75 with 0.5"]
+    assert section(lines, "Because:") == ["a - b > 0.5: true, 0.75 > 0.5 by 0.25"]
 
 
 def test_of_a_disjunction_under_never_the_disjunct_that_holds_is_shown() -> None:
-    assert section(figure("never (a > 1 or b > 1)\n", (0.0, 2.0)), "Because:") == [
-        "b > 1: true, comparing 2.0 with 1.0"
-    ]
+    assert section(figure("never (a > 1 or b > 1)\n", (0.0, 2.0)), "Because:") == ["b > 1: true, 2.0 > 1.0 by 1"]
 
 
 def test_of_a_disjunction_under_always_every_disjunct_is_shown_as_each_had_to_fail() -> None:
     lines = figure("always (a < 1 or b < 1)\n", (3.0, 2.0))
     assert section(lines, "Because:") == [
-        "a < 1: false, comparing 3.0 with 1.0",
-        "b < 1: false, comparing 2.0 with 1.0",
+        "a < 1: false, 3.0 >= 1.0 by 2",
+        "b < 1: false, 2.0 >= 1.0 by 1",
     ]
 
 
 def test_margins_belong_to_the_side_that_they_move() -> None:
     lines = figure("never a >{0.5} b\n", (3.0, 2.0))
     (because,) = section(lines, "Because:")
-    assert because.endswith("true, comparing 3.0 with 2.5")
+    assert because.endswith("true, 3.0 > 2.5 by 0.5")
 
 
 def test_what_was_owed_when_the_property_was_violated_is_named() -> None:
     lines = figure("after_until a > 1, a < 0, eventually b == 7\n", (2.0, 0.0), (2.0, 0.0), (-1.0, 7.0))
-    assert "Until then still open since 0 s (step 0): eventually b == 7" in lines
+    assert "Unmet since +0 s (step 0): eventually b == 7" in lines
 
 
 def test_a_violation_tells_the_inner_episode_as_well_as_the_outermost() -> None:
     text = "after_until a > 1, a < 0, (after_until b > 1, b < 0, eventually a == 7)\n"
     run = judged(text, (0.0, 2.0), (2.0, 0.0), (2.0, 2.0), (2.0, -1.0))
-    assert reports.figure(run.tracks[0]).splitlines()[-2:] == [
-        "The episode opened at 1 s (step 1).",
-        "Inside it, that of `after_until b > 1, b < 0` opened at 2 s (step 2).",
+    assert reports.figure(run.session, run.tracks[0]).splitlines()[-2:] == [
+        "The episode opened at +1 s (step 1).",
+        "Inside it, that of `after_until b > 1, b < 0` opened at +2 s (step 2).",
     ]
-    decided = reports.property_report(run.tracks[0])["decided_at"]
-    assert decided["episode_opened"] == {"step": 1, "time": 1.0, "time_ns": ns(1), "by_time": False}
+    decided = documents.property_report(run.session, run.tracks[0])["decided_at"]
+    assert decided["episode_opened"] == {
+        "step": 1,
+        "time": 1.0,
+        "time_ns": ns(1),
+        "offset": 1.0,
+        "by_time": False,
+    }
     assert [opening["step"] for opening in decided["episodes_opened"]] == [1, 2]
 
 
@@ -218,7 +224,7 @@ def test_kept_verdicts_have_their_times_also_where_ticks_are_not_done_one_by_one
     run.samples(ns(20.0), ("a",), (0.0,))
     (track,) = run.tracks
     assert track.times == [ns(10 + k / 4) for k in range(40)]
-    assert reports.property_report(track)["times"] == [10 + k / 4 for k in range(40)]
+    assert documents.property_report(run.session, track)["times"] == [10 + k / 4 for k in range(40)]
     assert len(track.verdicts or []) == 40
 
 
@@ -227,8 +233,8 @@ def test_steps_of_different_properties_at_one_instant_have_one_time() -> None:
     for time, name, value in ((0.0, "a", 0.0), (0.25, "a", 0.0), (0.5, "b", 0.0)):
         run.samples(ns(time), (name,), (value,))
     run.samples(ns(0.75), ("a", "b"), (2.0, 2.0))
-    places = [reports.moment_text(t.decided_at) for t in run.tracks if t.decided_at is not None]
-    assert places == ["0.75 s (step 2)", "0.75 s (step 1)"]
+    places = [reports.moment_text(t.decided_at, run.session.scale) for t in run.tracks if t.decided_at is not None]
+    assert places == ["+0.75 s (step 2)", "+0.75 s (step 1)"]
 
 
 @pytest.mark.parametrize(
@@ -240,14 +246,49 @@ def test_steps_of_different_properties_at_one_instant_have_one_time() -> None:
         (1763740800_123456789, "1763740800.123456789 s (step 1)"),
     ],
 )
-def test_times_are_told_to_the_nanosecond(time: int, text: str) -> None:
-    assert reports.moment_text(Moment(1, time)) == text
+def test_absolute_times_are_reported_to_the_nanosecond(time: int, text: str) -> None:
+    assert reports.moment_text(Moment(1, time), Scale()) == text
+
+
+@pytest.mark.parametrize(
+    ("time", "text"),
+    [
+        (0, "+0 s"),
+        (300_000_000, "+0.3 s"),
+        (15_751_999_600, "+15.752 s"),
+        (2_000_000_001, "+2 s"),
+        (-500_000_000, "-0.5 s"),
+    ],
+)
+def test_offsets_are_reported_to_the_millisecond(time: int, text: str) -> None:
+    zero = 1763740800_123456789
+    assert Scale(zero).text(zero + time) == text
+
+
+@given(st.lists(st.integers(0, 10**10), max_size=4), st.integers(0, 2 * 10**18))
+def test_different_times_that_are_shown_together_never_look_alike(offsets: list[int], zero: int) -> None:
+    times = {zero + offset for offset in offsets}
+    scale = Scale(zero).among(times)
+    assert len({scale.text(time) for time in times}) == len(times)
+    coarse = {Scale(zero).text(time) for time in times}
+    assert scale.digits == 3 or len(coarse) < len(times)
+
+
+def test_a_violation_a_nanosecond_after_its_episode_opened_shows_the_nanosecond() -> None:
+    run = session(AB + "after_until a > 1, a < 0, always age(b) <= 1 ns\n")
+    run.samples(0, ("a", "b"), (0.0, 0.0))
+    run.samples(ns(2), ("a", "b"), (2.0, 0.0))
+    run.advance(ns(3))
+    assert reports.figure(run.session, run.tracks[0]).splitlines()[-2:] == [
+        "At +2.000000002 s (after step 1).",
+        "The episode opened at +2 s (step 1).",
+    ]
 
 
 @pytest.mark.parametrize("text", ["plain", """a "b" and 'c'""", "1 < 2 > 0 & ]]>", "&quot; &amp;"])
 def test_a_junit_report_says_each_text_as_it_is(text: str) -> None:
-    case = reports.Case(text, "failure", "violated", text, text)
-    suite = ElementTree.fromstring(reports.suite_text(text, [case], [text]))
+    case = junit.Case(text, "failure", "violated", text, text)
+    suite = ElementTree.fromstring(junit.suite_text(text, [case], [text]))
     found = suite.find("testcase")
     assert found is not None
     failure = found.find("failure")
@@ -258,9 +299,9 @@ def test_a_junit_report_says_each_text_as_it_is(text: str) -> None:
 
 
 def test_a_verdict_that_fails_is_a_failure_and_one_that_lost_messages_an_error() -> None:
-    assert reports.case_element(Verdict.VIOLATED) == reports.case_element(Verdict.VIOLATED, has_lost=True) == "failure"
-    assert reports.case_element(Verdict.SATISFIED) is None
-    assert reports.case_element(Verdict.SATISFIED, has_lost=True) == "error"
+    assert junit.case_element(Verdict.VIOLATED) == junit.case_element(Verdict.VIOLATED, has_lost=True) == "failure"
+    assert junit.case_element(Verdict.SATISFIED) is None
+    assert junit.case_element(Verdict.SATISFIED, has_lost=True) == "error"
 
 
 def test_names_of_topics_that_would_be_equal_are_counted_from_two() -> None:

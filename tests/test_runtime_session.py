@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from stepping import from_text, ns, session
 
 from ltlc.backends.python.load import load_plan
-from ltlc.runtime import reports
+from ltlc.runtime import documents, junit, reports
 from ltlc.runtime.rows import ByRows
 from ltlc.runtime.session import Session
 from ltlc.runtime.silence import waiting_for
@@ -421,8 +421,8 @@ def test_a_malformed_message_is_no_step_but_is_news_and_renews_ages() -> None:
     assert run.judge(ns(1), "/a", None) == []
     assert (track.steps, track.invalid, run.session.is_incomplete) == (1, 0, True)
     assert "1 message on /a was malformed" in reports.summary(run.session)
-    assert reports.document("run", run.session)["properties"][0]["malformed_messages"] == {"/a": 1}
-    assert 'failures="0" errors="1"' in reports.junit("run", run.session)
+    assert documents.document("run", run.session)["properties"][0]["malformed_messages"] == {"/a": 1}
+    assert 'failures="0" errors="1"' in junit.junit("run", run.session)
     watched = feed(session("decl a /a std_msgs/Float64.data\nalways age(a) <= 2 s\n"), (0, "/a", 1.0))
     assert watched.judge(ns(2), "/a", None) == []
     assert watched.advance(ns(4)) == []
@@ -435,7 +435,7 @@ def test_nothing_is_well_where_messages_were_lost_that_a_property_reads() -> Non
     run.session.lose("/b", 2)
     run.session.lose("/b", 1)
     run.session.lose("/b")
-    both, other = reports.document("run", run.session)["properties"]
+    both, other = documents.document("run", run.session)["properties"]
     assert both["lost_messages"] == {"/a": None, "/b": None}
     assert both["lost_at_least"] == {"/a": 0, "/b": 3}
     assert "lost_messages" not in other
@@ -443,7 +443,7 @@ def test_nothing_is_well_where_messages_were_lost_that_a_property_reads() -> Non
         "may have been lost; 3 messages on /b were lost, and more may have been"
         in reports.summary(run.session).splitlines()[0]
     )
-    assert 'failures="0" errors="1"' in reports.junit("run", run.session)
+    assert 'failures="0" errors="1"' in junit.junit("run", run.session)
     verdicts = [track.verdict for track in run.tracks]
     assert (reports.exit_code(verdicts), reports.exit_code(verdicts, has_lost=True)) == (0, 3)
 

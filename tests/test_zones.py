@@ -186,7 +186,7 @@ def test_a_report_says_whether_a_point_is_inside_and_compares_nothing(tmp_path: 
     assert main(["run", str(tmp_path / "props.txt"), str(tmp_path / "run.csv")]) == 1
     said = capsys.readouterr().out
     assert "  inside(p.x, p.y, k): true\n" in said
-    assert "  x > 2: true, comparing 3.0 with 2.0\n" in said
+    assert "  x > 2: true, 3.0 > 2.0 by 1\n" in said
 
 
 def test_zone_is_a_name_where_no_polygon_follows() -> None:

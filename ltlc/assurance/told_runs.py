@@ -12,7 +12,7 @@ from ltlc.assurance.sources import read, without_news
 from ltlc.assurance.traffic import Begun, Event, Heard, Passed, Quiet, Together
 from ltlc.assurance.values import Samples
 from ltlc.compiler import Compiled
-from ltlc.runtime.reports import json_value
+from ltlc.runtime.documents import json_value
 
 MOST_RUNS, MOST_IN_ALL = 20, 2_000
 """How many runs are told of a property, and of all together if that leaves one for each."""

@@ -40,8 +40,8 @@ imports of ltlc, into emitted ROS 2 nodes. In short:
         Messages that came but could not be read; reported in the same way.
 
 Each `Change` has the property, its previous and current verdict, and the moment (step,
-time, and whether time alone changed it). `reports` makes the text, JSON lines, JSON
-document and JUnit XML of a run. Times are integers of nanoseconds.
+time, and whether time alone changed it). `reports` makes the text of a run, `documents`
+its JSON lines and document, `junit` its XML. Times are integers of nanoseconds.
 """
 
 MODULES = (
@@ -60,6 +60,8 @@ MODULES = (
     "ltlc.runtime.rows",
     "ltlc.runtime.silence",
     "ltlc.runtime.reports",
+    "ltlc.runtime.documents",
+    "ltlc.runtime.junit",
     "ltlc.runtime.slice_keys",
     "ltlc.runtime.slice_ids",
     "ltlc.runtime.slice_openings",

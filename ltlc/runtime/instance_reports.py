@@ -6,8 +6,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
+from ltlc.runtime.documents import failure_report, moment_report
 from ltlc.runtime.properties import Opening
-from ltlc.runtime.reports import failure_report, moment_report
 from ltlc.runtime.sampling import New
 from ltlc.runtime.slice_ids import Violation
 from ltlc.runtime.slice_keys import Id
@@ -15,10 +15,11 @@ from ltlc.runtime.slice_openings import Openings
 from ltlc.runtime.slice_reports import (
     Owed,
     ToldSlices,
+    first_shown,
     messages_text,
     owed_report,
 )
-from ltlc.runtime.times import seconds_text
+from ltlc.runtime.times import Scale
 
 
 class ToldInstances(ToldSlices):
@@ -31,6 +32,14 @@ class ToldInstances(ToldSlices):
     openings: Openings | None
 
     @property
+    def _scale(self) -> Scale:
+        """Fine enough to tell the messages apart that are named."""
+        violated = first_shown(self.ids.violated.items())
+        named = [each.failure.opened for _, each in violated]
+        named += [each.opened for each in self.owed()]
+        return self.session.scale.among(opened[0].time for opened in named)
+
+    @property
     def _openings(self) -> Openings:
         assert self.openings is not None
         return self.openings
@@ -41,7 +50,7 @@ class ToldInstances(ToldSlices):
 
     def _named(self, id_: Id, opened: Sequence[Opening]) -> str:
         """When the message came: what opened first is the instance."""
-        return f"{seconds_text(opened[0].time)} s"
+        return self._scale.text(opened[0].time)
 
     @property
     def _which(self) -> str:
@@ -49,9 +58,9 @@ class ToldInstances(ToldSlices):
 
     def _violated(self, id_: Id, each: Violation) -> str:
         more = f", and {each.more} more like it" if each.more else ""
-        at = seconds_text(each.failure.time)
+        at = self._scale.text(each.failure.time)
         made = self._named(id_, each.failure.opened)
-        return f"that at {made} (decided at {at} s{more})"
+        return f"that at {made} (decided at {at}{more})"
 
     def _owing(self, each: Owed) -> str:
         return f"that at {self._named(each.id, each.opened)}"
@@ -66,7 +75,8 @@ class ToldInstances(ToldSlices):
 
     def document(self) -> dict[str, Any]:
         """The messages in the JSON document of `ltlc run`."""
-        messages = self._openings.messages
+        messages, zero = self._openings.messages, self.session.beginning
+        constants = self.track.property.constants
         return {
             "new": self._openings.opener.name,
             "messages": messages.messages,
@@ -75,14 +85,17 @@ class ToldInstances(ToldSlices):
             "violated": [
                 {
                     "message": number,
-                    "opened_at": moment_report(each.failure.opened[0]),
-                    "decided_at": failure_report(each.failure),
+                    "opened_at": moment_report(each.failure.opened[0], zero),
+                    "decided_at": failure_report(each.failure, zero, constants),
                     "more": each.more,
                 }
                 for number, each in messages.violated.items()
             ],
             "owed": [
-                {"opened_at": moment_report(each.opened[0]), **owed_report(each)}
+                {
+                    "opened_at": moment_report(each.opened[0], zero),
+                    **owed_report(each, zero),
+                }
                 for each in self.owed()
             ],
             "left_out": messages.left_out,
@@ -93,7 +106,8 @@ class ToldInstances(ToldSlices):
         """The violation from a message on as data; the message by its number."""
         found = super()._line(id_, violation)
         del found["id"], found["may_lack_beginning"]
-        opened = moment_report(violation.failure.opened[0])
+        zero = self.session.beginning
+        opened = moment_report(violation.failure.opened[0], zero)
         return {**found, "message": id_, "opened_at": opened, "more": violation.more}
 
     def _figure(self, id_: Id, violation: Violation) -> str:

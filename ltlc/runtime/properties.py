@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
 from operator import attrgetter
@@ -67,12 +67,35 @@ class Condition:
     """A condition of a property at a step; `left` and `right` are what it compares.
 
     They include its margin, and are None where a boolean is not compared to anything.
+    The `relation` is that of numbers in order, or empty. If it asks for an `age`, that
+    is in ns, unless it has just passed the bound. If one `element` of arrays makes it
+    hold or fail, that is its index and, by the name of each array, its value.
     """
 
     text: str
     holds: bool
     left: Value = None
     right: Value = None
+    relation: str = ""
+    age: int | None = None
+    element: tuple[int, tuple[tuple[str, Value], ...]] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Elements:
+    """The condition with this number is about elements of the inputs at these places.
+
+    Some first element decides it: the one whose value it compares (`is_extreme`), or
+    else the first with which it holds, or fails.
+    """
+
+    condition: int
+    places: tuple[int, ...]
+    is_extreme: bool = False
+
+
+Constants = Mapping[str, Mapping[Value, str]]
+"""Of inputs, by name, what their messages call some of their values."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,12 +116,14 @@ class Clock:
     There is a condition in `texts` for each of its `bounds`, ascending. Whether that
     holds is `late` from when on the clock is past the bound. A count has no bounds: the
     clock moves with what occurs at a step, before the step asks for its one condition.
+    That of an age (`is_age`) counts from the last message.
     """
 
     due: str
     texts: tuple[str, ...]
     bounds: tuple[int, ...]
     late: bool
+    is_age: bool = False
 
     def passed(self, passed: int, before: int, after: int) -> int:
         """How many bounds have passed once its due time changes; none, if it starts."""
@@ -159,8 +184,9 @@ class MonitoredProperty:
     leave open. `edges` has where each state of the monitor leads at a step,
     `held_edges` where at a clock step, through `decisions` about what `conditions`
     gives for the values that are read, and about `clocks`; all are empty where nothing
-    violates the property. With a `slicing` it is judged for each id,
-    and all of this is said of one slice.
+    violates the property. Of conditions about arrays, `elements` says what decides
+    them; `constants` are names of values of inputs. With a `slicing` it is judged for
+    each id, and all of this is said of one slice.
 
     It `waits` for those of its inputs that are not excused; news always has a value.
     `dues` of a monitor are when each of its clocks is due; with `counts_bounds`, some
@@ -188,6 +214,8 @@ class MonitoredProperty:
     edges: tuple[int, ...] = ()
     held_edges: tuple[int, ...] = ()
     decisions: tuple[Decision, ...] = ()
+    elements: tuple[Elements, ...] = ()
+    constants: Constants = field(default_factory=dict)
     slicing: SlicedBy | None = None
 
     waits: tuple[bool, ...] = field(init=False, repr=False, compare=False)

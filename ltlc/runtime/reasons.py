@@ -2,10 +2,18 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Collection, Mapping, Sequence
+from dataclasses import replace
 from math import isnan
 
-from ltlc.runtime.properties import Condition, Moment, MonitoredProperty
+from ltlc.runtime.properties import (
+    Clock,
+    Condition,
+    Elements,
+    Moment,
+    MonitoredProperty,
+)
 from ltlc.runtime.sampling import Value
 
 Before = tuple[int, Sequence[int]]
@@ -25,10 +33,11 @@ def because(
     """
     state, dues = before
     late = [due < moment.time for due in dues]
-    found = list(of.conditions(*of.given(values)))
+    given = of.given(values)
+    found = list(of.conditions(*given))
     holds = [*(condition.holds for condition in found), *late]
-    for clock, is_late, n in zip(of.clocks, late, bounds, strict=True):
-        found.append(Condition(clock.texts[n], is_late == clock.late))
+    for clock, due, n in zip(of.clocks, dues, bounds, strict=True):
+        found.append(_of_clock(clock, due, moment.time, n))
     edges = of.held_edges if moment.by_time else of.edges
     unknown = {n for e in of.excused if values[e.place] is None for n in e.conditions}
     numbers = decisive(of, edges[state], holds, unknown)
@@ -36,7 +45,49 @@ def because(
     if moment.by_time and not any(number >= first for number in numbers):
         passed = (n for n, is_late in enumerate(late, first) if is_late)
         numbers = (*numbers, *passed)
-    return tuple(found[number] for number in numbers)
+    elements = {each.condition: each for each in of.elements}
+    return tuple(
+        with_element(of, elements[n], given, found[n]) if n in elements else found[n]
+        for n in numbers
+    )
+
+
+def _of_clock(clock: Clock, due: int, time: int, passed: int) -> Condition:
+    """What a clock that is `due` then, so many bounds of which have passed, decides.
+
+    An age that has just passed its bound is not told.
+    """
+    age = None
+    if clock.is_age and time > due + 1:
+        age = time - due + clock.bounds[passed]
+    return Condition(clock.texts[passed], (due < time) == clock.late, age=age)
+
+
+def with_element(
+    of: MonitoredProperty,
+    elements: Elements,
+    values: Sequence[Value],
+    condition: Condition,
+) -> Condition:
+    """A condition with the element of its arrays that decides it, if there is one."""
+    arrays = [values[place] for place in elements.places]
+    length = min(map(len, arrays))
+
+    def shown(first: int) -> Value:
+        """What the condition has of the first elements."""
+        part = list(values)
+        for place, array in zip(elements.places, arrays, strict=True):
+            part[place] = array[:first]
+        found = list(of.conditions(*part))[elements.condition]
+        return found.left if elements.is_extreme else found.holds
+
+    wanted = condition.left if elements.is_extreme else condition.holds
+    least = bisect_left(range(length), True, key=lambda n: shown(n + 1) == wanted)
+    if least == length or shown(least) == wanted:
+        return condition
+    names = (str(of.inputs[place]) for place in elements.places)
+    told = tuple((name, a[least]) for name, a in zip(names, arrays, strict=True))
+    return replace(condition, element=(least, told))
 
 
 def decisive(

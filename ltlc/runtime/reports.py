@@ -1,17 +1,12 @@
-"""What a run has shown, as text, JSON and JUnit XML."""
+"""What a run has shown, as text."""
 
 from __future__ import annotations
 
-import json
-import math
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
-from html import escape
-from typing import Any
+from math import isfinite
 
 from ltlc.runtime.properties import (
-    Change,
     Condition,
     Failure,
     Moment,
@@ -20,7 +15,7 @@ from ltlc.runtime.properties import (
 from ltlc.runtime.sampling import Value
 from ltlc.runtime.session import Loss, Session
 from ltlc.runtime.silence import beginning, lost, malformed, waiting_for
-from ltlc.runtime.times import seconds, seconds_text
+from ltlc.runtime.times import Scale, seconds_text, span_text
 from ltlc.runtime.tracking import Track
 from ltlc.semantics.verdicts import Verdict
 
@@ -63,33 +58,38 @@ def value_text(value: Value) -> str:
     return text if len(value) <= LONGEST else f"{text}... ({len(value)} in all)"
 
 
-def figure(track: Track) -> str:
+def figure(session: Session, track: Track) -> str:
     """The error message for a violated property: its text, and the failing state."""
     if track.slices is not None:
         return track.slices.figure()
     assert track.decided_at is not None
-    return failure_text(track.property, track.decided_at)
+    return failure_text(track.property, track.decided_at, session.scale)
 
 
-def failure_text(property_: MonitoredProperty, failure: Failure) -> str:
+def failure_text(property_: MonitoredProperty, failure: Failure, scale: Scale) -> str:
     """The error message for a property that is violated.
 
     The form of Figure 1 of Cordeiro, Fonseca and Timperley, *Formalization and Runtime
     Verification of Invariants for Robotic Systems*, with what led to it, and when.
     """
+    since = failure.open_since
+    moments = [failure, *([] if since is None else [since]), *failure.opened]
+    scale = scale.among(moment.time for moment in moments)
     lines = [f"Error at line {_place(property_)}:"]
     lines.append(f"  {property_.text}")
     lines.append("Failing state:")
-    lines += [f"  {name}: {value_text(value)}" for name, value in failure.values]
+    for name, value in failure.values:
+        lines.append(f"  {name}: {named_text(property_, name, value)}")
     if failure.because:
         lines.append("Because:")
-        lines += [f"  {_condition(condition)}" for condition in failure.because]
-    if failure.open_since is not None:
-        lines.append(f"Until then {_owed(property_, failure.open_since)}")
-    lines.append(f"At {moment_text(failure)}.")
+        lines += [f"  {condition_text(property_, c)}" for c in failure.because]
+    if since is not None:
+        lines.append(f"Unmet since {_owed(property_, since, scale)}")
+    clock = f", {seconds_text(failure.time)} by the clock" if scale.has_clock else ""
+    lines.append(f"At {moment_text(failure, scale)}{clock}.")
     for depth, opening in enumerate(failure.opened):
         within = f"Inside it, that of `{opening.scope}`" if depth else "The episode"
-        lines.append(f"{within} opened at {moment_text(opening)}.")
+        lines.append(f"{within} opened at {moment_text(opening, scale)}.")
     return "".join(f"{printable(line)}\n" for line in lines)
 
 
@@ -100,19 +100,60 @@ def _place(property_: MonitoredProperty) -> str:
     return f"{place} ({property_.label})" if has_label else place
 
 
-def _condition(condition: Condition) -> str:
-    """What a condition was, and what it compared."""
-    truth = f"{condition.text}: {value_text(condition.holds)}"
-    if condition.left is None:
-        return truth
-    sides = (value_text(condition.left), value_text(condition.right))
-    return f"{truth}, comparing {' with '.join(sides)}"
+def named_text(property_: MonitoredProperty, name: str, value: Value) -> str:
+    """The value of an input, with the name that its message has for it: `ERROR (2)`."""
+    constant = property_.constants.get(name, {}).get(value)
+    return value_text(value) if constant is None else f"{constant} ({value:g})"
 
 
-def moment_text(moment: Moment) -> str:
-    """A step, or the clock step after it, and its time, to the nanosecond."""
+_OPPOSITES = {"<": ">=", "<=": ">", ">": "<=", ">=": "<"}
+
+
+def condition_text(property_: MonitoredProperty, condition: Condition) -> str:
+    """What a condition was, what it compared, and by how much the sides differ."""
+    parts = [value_text(condition.holds)]
+    if condition.left is not None and (compared := _compared(property_, condition)):
+        parts.append(compared)
+    if condition.age is not None:
+        parts.append(f"the age is {span_text(condition.age)}")
+    if condition.element is not None:
+        index, values = condition.element
+        parts += [f"{name}[{index}] is {value_text(value)}" for name, value in values]
+    return f"{condition.text}: {', '.join(parts)}"
+
+
+def _compared(property_: MonitoredProperty, condition: Condition) -> str:
+    left, right = value_text(condition.left), value_text(condition.right)
+    difference = distance(condition)
+    by = f" by {difference:.6g}" if difference else ""
+    if condition.relation in _OPPOSITES:
+        is_so, relation = condition.holds, condition.relation
+        return f"{left} {relation if is_so else _OPPOSITES[relation]} {right}{by}"
+    if difference is None:
+        return f"comparing {left} with {right}"
+    if not by:
+        return ""
+    name = condition.text.partition(" == ")[0]
+    if name in property_.constants:
+        return f"it is {named_text(property_, name, condition.left)}"
+    return f"{left} differs from {right}{by}"
+
+
+def distance(condition: Condition) -> float | None:
+    """By how much the two sides differ, if they are finite numbers."""
+    left, right = condition.left, condition.right
+    if not all(
+        side.__class__ in (int, float) and isfinite(side) for side in (left, right)
+    ):
+        return None
+    found: float = abs(left - right)
+    return found
+
+
+def moment_text(moment: Moment, scale: Scale) -> str:
+    """A step, or the clock step after it, and its time."""
     place = f"after step {moment.step}" if moment.by_time else f"step {moment.step}"
-    return f"{seconds_text(moment.time)} s ({place})"
+    return f"{scale.text(moment.time)} ({place})"
 
 
 def summary(session: Session) -> str:
@@ -124,7 +165,7 @@ def summary(session: Session) -> str:
 def unseen(session: Session) -> list[str]:
     """What there is to say about messages that came and went between two ticks."""
     return [
-        f"no tick saw {count} of {_count(session.messages[topic], 'message')} "
+        f"no tick saw {count} of {counted(session.messages[topic], 'message')} "
         f"on {printable(topic)}"
         for topic, count in session.unseen.items()
         if count
@@ -134,16 +175,16 @@ def unseen(session: Session) -> list[str]:
 def sentence(session: Session, track: Track) -> str:
     """What there is to say about a property, in one line."""
     verdict = track.verdict.value.replace("_", " ")
-    parts = [f"{printable(track.property.label)}: {verdict}{_since(track)}"]
+    parts = [f"{printable(track.property.label)}: {verdict}{_since(session, track)}"]
     parts += explanation(session, track)
     return "; ".join(parts)
 
 
-def _since(track: Track) -> str:
+def _since(session: Session, track: Track) -> str:
     if track.slices is not None:
         return track.slices.since()
     if track.decided_at is not None:
-        return f" at {moment_text(track.decided_at)}"
+        return f" at {moment_text(track.decided_at, session.scale)}"
     return ""
 
 
@@ -152,43 +193,46 @@ def explanation(session: Session, track: Track) -> list[str]:
     remarks = []
     if track.verdict is Verdict.NOT_STARTED and not track.invalid:
         remarks += waiting_for(session, track)
-    if _skips(session, track):
+    if skips(session, track):
         remarks += [beginning(session, track), _skipped(track)]
     if track.slices is not None:
         remarks += track.slices.remarks()
     elif track.open_since is not None:
-        remarks.append(_owed(track.property, track.open_since))
+        owed = _owed(track.property, track.open_since, session.scale)
+        remarks.append(f"unmet since {owed}")
         left = time_left(session, track)
         if left is not None:
-            remarks.append(f"{seconds_text(left)} s left")
+            remarks.append(f"{span_text(left)} left")
+    if track.times_violated > 1:
+        remarks.append(counted(track.times_violated, "violation"))
     if track.never_triggered:
         remarks.append("holds, but never triggered: no episode opened")
     elif track.episodes is not None:
-        remarks.append(_count(track.episodes, "episode"))
+        remarks.append(counted(track.episodes, "episode"))
     if track.slices is None:
-        remarks.append(_count(track.steps, "step"))
+        remarks.append(counted(track.steps, "step"))
     for reason, count in track.invalid_because.items():
-        remarks.append(f"{_count(count, 'step')} left out: {reason}")
+        remarks.append(f"{counted(count, 'step')} left out: {reason}")
     for name, count in not_measured(session, track).items():
         were = "was NaN, no measurement" if count == 1 else "were NaN, no measurements"
-        remarks.append(f"{_count(count, 'element')} of {name} {were}")
+        remarks.append(f"{counted(count, 'element')} of {name} {were}")
     if track.delays:
         remarks.append(_delay(track))
     remarks += [_loss(topic, loss) for topic, loss in lost(session, track).items()]
     for topic, count in malformed(session, track).items():
         were = "was" if count == 1 else "were"
-        remarks.append(f"{_count(count, 'message')} on {topic} {were} malformed")
+        remarks.append(f"{counted(count, 'message')} on {topic} {were} malformed")
     return [printable(remark) for remark in remarks]
 
 
-def _skips(session: Session, track: Track) -> bool:
+def skips(session: Session, track: Track) -> bool:
     """Whether messages were not judged before a property began, later than the run."""
     return bool(track.skipped) and track.began not in (None, session.began)
 
 
 def _skipped(track: Track) -> str:
     counts = sorted(track.skipped.items())
-    said = [f"{_count(n, 'message')} on {topic}" for topic, n in counts]
+    said = [f"{counted(n, 'message')} on {topic}" for topic, n in counts]
     were = "was" if [n for _, n in counts] == [1] else "were"
     return f"{' and '.join(said)} before that {were} not judged"
 
@@ -208,214 +252,27 @@ def time_left(session: Session, track: Track) -> int | None:
     return None if deadline is None else deadline - 1 - session.time
 
 
-def _owed(property_: MonitoredProperty, since: Moment) -> str:
+def _owed(property_: MonitoredProperty, since: Moment, scale: Scale) -> str:
     owed = " or ".join(property_.obligations) or property_.text
-    return f"still open since {moment_text(since)}: {owed}"
+    return f"{moment_text(since, scale)}: {owed}"
 
 
 def _loss(topic: str, loss: Loss) -> str:
     if not loss.count:
         return f"some messages on {topic} may have been lost"
     were = "was" if loss.count == 1 else "were"
-    text = f"{_count(loss.count, 'message')} on {topic} {were} lost"
+    text = f"{counted(loss.count, 'message')} on {topic} {were} lost"
     return text if loss.is_all else f"{text}, and more may have been"
 
 
 def _delay(track: Track) -> str:
-    longest = seconds_text(track.longest_delay)
-    return f"told {_count(track.delays, 'time')} late, by {longest} s at most"
+    longest = span_text(track.longest_delay)
+    return f"reported late {counted(track.delays, 'time')}, by {longest} at most"
 
 
-def _count(number: int, noun: str) -> str:
-    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
-
-
-def property_report(track: Track) -> dict[str, Any]:
-    """A property in the JSON document of `ltlc run`."""
-    failure = track.decided_at
-    decided = None if failure is None else failure_report(failure)
-    report = {
-        "label": track.property.label,
-        "file": track.property.file,
-        "line": track.property.line,
-        "text": track.property.text,
-        "verdict": track.verdict.value,
-        "steps": track.steps,
-        "episodes": track.episodes,
-        "decided_at": decided,
-        "open_since": _optional(track.open_since),
-        "invalid_steps": track.invalid,
-        "never_triggered": track.never_triggered,
-    }
-    if track.verdicts is not None:
-        report["verdicts"] = [verdict.value for verdict in track.verdicts]
-        report["times"] = [seconds(time) for time in track.times]
-        report["times_ns"] = track.times
-    if track.slices is not None:
-        report["each"] = track.slices.document()
-    return report
-
-
-def failure_report(failure: Failure) -> dict[str, Any]:
-    """What decided a property, in the JSON document of `ltlc run`."""
-    return {
-        **moment_report(failure),
-        "values": {name: json_value(value) for name, value in failure.values},
-        "because": [_because(condition) for condition in failure.because],
-        "open_since": _optional(failure.open_since),
-        "episode_opened": _optional(next(iter(failure.opened), None)),
-        "episodes_opened": [
-            {"scope": opening.scope, **moment_report(opening)}
-            for opening in failure.opened
-        ],
-    }
-
-
-def _because(condition: Condition) -> dict[str, Any]:
-    return {
-        "condition": condition.text,
-        "holds": condition.holds,
-        "left": json_value(condition.left),
-        "right": json_value(condition.right),
-    }
-
-
-def document(recording: str, session: Session) -> dict[str, Any]:
-    """The JSON document of `ltlc run`."""
-    properties = []
-    for track in session.tracks:
-        report = property_report(track)
-        left = time_left(session, track)
-        report["left"] = None if left is None else seconds(left)
-        report["left_ns"] = left
-        if track.verdict is Verdict.NOT_STARTED:
-            report["waiting_for"] = waiting_for(session, track)
-        if track.began is not None and _skips(session, track):
-            report["began_at"] = seconds(track.began)
-            report["began_at_ns"] = track.began
-            report["not_judged"] = dict(sorted(track.skipped.items()))
-        if track.delays:
-            longest = seconds(track.longest_delay)
-            report["told_late"] = {"times": track.delays, "longest": longest}
-        if track.invalid:
-            report["invalid_because"] = dict(track.invalid_because)
-        if count := not_measured(session, track):
-            report["elements_not_measured"] = count
-        if missed := lost(session, track):
-            report["lost_messages"] = {
-                topic: loss.count if loss.is_all else None
-                for topic, loss in missed.items()
-            }
-            report["lost_at_least"] = {t: loss.count for t, loss in missed.items()}
-        if damaged := malformed(session, track):
-            report["malformed_messages"] = damaged
-        properties.append(report)
-    return {
-        "recording": recording,
-        "steps": session.steps,
-        "unseen_messages": {t: count for t, count in session.unseen.items() if count},
-        "properties": properties,
-    }
-
-
-def json_line(change: Change) -> str:
-    """A change of verdict as one line of JSON."""
-    data = {
-        "label": change.property.label,
-        "file": change.property.file,
-        "line": change.property.line,
-        "previous": change.previous.value,
-        "verdict": change.current.value,
-        **moment_report(change.moment),
-    }
-    return json.dumps(data)
-
-
-def junit(
-    name: str,
-    session: Session,
-    more: Sequence[Case] = (),
-    remarks: Sequence[str] = (),
-) -> str:
-    """A JUnit XML report: a test suite `name` with one test case for each property.
-
-    After these come `more`, and then `remarks` on all of it.
-
-    What is violated or still owed at the end fails; what never started is an error, and
-    so is what would hold if no message had been lost.
-    """
-    cases = [*(_case(session, track) for track in session.tracks), *more]
-    return f"{XML_HEAD}{suite_text(name, cases, [*unseen(session), *remarks])}"
-
-
-XML_HEAD = '<?xml version="1.0" encoding="UTF-8"?>\n'
-
-
-@dataclass(frozen=True, slots=True)
-class Case:
-    """A test case: what there is to say about it in a line, and if it failed in full.
-
-    `element` is what a case has that did not pass: `failure`, `error`, or None.
-    """
-
-    name: str
-    element: str | None
-    kind: str
-    message: str
-    details: str
-
-
-def suite_text(name: str, cases: Sequence[Case], remarks: Sequence[str]) -> str:
-    """A JUnit test suite as an element of XML."""
-    elements = [case.element for case in cases]
-    failures, errors = elements.count("failure"), elements.count("error")
-    told = "".join(f"{escape(remark, quote=False)}\n" for remark in remarks)
-    output = f"  <system-out>{told}</system-out>\n" if told else ""
-    return (
-        f'<testsuite name={_attribute(name)} tests="{len(cases)}" '
-        f'failures="{failures}" errors="{errors}">\n'
-        f"{''.join(_case_text(name, case) for case in cases)}{output}</testsuite>\n"
-    )
-
-
-def _case_text(suite: str, case: Case) -> str:
-    head = f"classname={_attribute(suite)} name={_attribute(case.name)}"
-    message = escape(printable(case.message), quote=False)
-    body = f"<system-out>{message}</system-out>"
-    if case.element is not None:
-        kind = f'message={_attribute(case.message)} type="{case.kind}"'
-        details = escape(case.details, quote=False)
-        body = f"<{case.element} {kind}>{details}</{case.element}>"
-    return f"  <testcase {head}>{body}</testcase>\n"
-
-
-_FAILURES = (Verdict.VIOLATED, Verdict.PRESUMABLY_VIOLATED)
-
-
-def _case(session: Session, track: Track) -> Case:
-    message = sentence(session, track)
-    is_violated = track.verdict is Verdict.VIOLATED
-    details = figure(track) if is_violated else f"{printable(message)}\n"
-    element = case_element(track.verdict, has_lost=_misses(session, track))
-    name = track.property.label
-    return Case(name, element, track.verdict.value, message, details)
-
-
-def _misses(session: Session, track: Track) -> bool:
-    """Whether something that a property reads could not be judged."""
-    left_out = track.slices is not None and track.slices.left_out > 0
-    return bool(lost(session, track) or malformed(session, track)) or left_out
-
-
-def case_element(verdict: Verdict, has_lost: bool = False) -> str | None:
-    """What a test case has that did not pass."""
-    if verdict in _FAILURES:
-        return "failure"
-    return None if verdict.holds and not has_lost else "error"
-
-
-def _attribute(text: str) -> str:
-    return f'"{escape(printable(text))}"'
+def counted(number: int, noun: str, nouns: str = "") -> str:
+    """So many of something."""
+    return f"{number} {noun if number == 1 else nouns or noun + 's'}"
 
 
 def exit_code(verdicts: Sequence[Verdict], has_lost: bool = False) -> int:
@@ -426,26 +283,3 @@ def exit_code(verdicts: Sequence[Verdict], has_lost: bool = False) -> int:
     if Verdict.VIOLATED in verdicts:
         return 1
     return 0 if not has_lost and all(verdict.holds for verdict in verdicts) else 3
-
-
-def moment_report(moment: Moment) -> dict[str, Any]:
-    """A moment, in JSON."""
-    return {
-        "step": moment.step,
-        "time": seconds(moment.time),
-        "time_ns": moment.time,
-        "by_time": moment.by_time,
-    }
-
-
-def _optional(moment: Moment | None) -> dict[str, Any] | None:
-    return None if moment is None else moment_report(moment)
-
-
-def json_value(value: Value) -> Any:
-    """`value` as JSON has it, which knows no infinite numbers: these as strings."""
-    if isinstance(value, tuple):
-        return [json_value(item) for item in value]
-    if isinstance(value, float) and not math.isfinite(value):
-        return repr(value)
-    return value

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from ltlc.runtime.properties import MonitoredProperty
 from ltlc.runtime.sampling import Derived, Reading, Sampler
 from ltlc.runtime.ticks import Paces
-from ltlc.runtime.times import NEVER
+from ltlc.runtime.times import NEVER, Scale, Times
 from ltlc.runtime.tracking import Observer, RecordedTrack, Track
 
 
@@ -55,6 +55,9 @@ class Session:
     has_begun: whether some property has had its first step
     end: the last moment of the run; a timeout counts from its first step
     is_over: whether that is past: nothing more is taken
+    times: how a reader is told the times of the run
+    zero: when the recording began, if the run began later
+    absences: why nothing comes of signals or on topics, by name, if that is known
     """
 
     def __init__(
@@ -62,15 +65,19 @@ class Session:
         plan: Plan,
         keep_verdicts: bool = False,
         observe: Callable[[], Observer] | None = None,
+        make: Callable[[MonitoredProperty, bool, Observer | None], Track] | None = None,
     ) -> None:
-        """Each property has an observer of its own, if `observe` makes them."""
+        """Each property has an observer of its own, if `observe` makes them.
+
+        `make` makes its track, whether or not it is recorded.
+        """
         self.plan = plan
         self.fields = _fields(plan)
         self.sampler = self._new_sampler()
+        if make is None and (keep_verdicts or observe):
+            make = RecordedTrack
         self.tracks = tuple(
-            RecordedTrack(p, keep_verdicts, observe and observe())
-            if keep_verdicts or observe
-            else Track(p)
+            make(p, keep_verdicts, observe and observe()) if make else Track(p)
             for p in plan.properties
         )
         self.stepped = [
@@ -88,6 +95,9 @@ class Session:
         self.has_begun = False
         self.end = NEVER
         self.is_over = False
+        self.times = Times.OFFSET
+        self.zero: int | None = None
+        self.absences: dict[str, str] = {}
         for track in self.tracks:
             if track.property.slicing is not None:
                 track.slices = track.property.slicing.start(track, self)
@@ -107,6 +117,20 @@ class Session:
         """The sampler that has the samples that a property looks at."""
         pace = None if self.paces is None else self.paces.of(track)
         return self.sampler if pace is None else pace.sampler
+
+    @property
+    def beginning(self) -> int | None:
+        """What offsets count from; None before there is a time."""
+        return self.began if self.zero is None else self.zero
+
+    @property
+    def scale(self) -> Scale:
+        """How a reader is told the times of the run."""
+        if self.times is Times.ABSOLUTE:
+            return Scale()
+        # What begins at 0 has one time only.
+        has_clock = self.times is Times.BOTH and self.beginning != 0
+        return Scale(self.beginning, has_clock=has_clock)
 
     @property
     def unseen(self) -> dict[str, int]:

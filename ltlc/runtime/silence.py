@@ -7,7 +7,6 @@ from typing import TypeVar
 
 from ltlc.runtime.sampling import Input, New, Reading, Sampler, Wanted
 from ltlc.runtime.session import Loss, Session
-from ltlc.runtime.times import seconds_text
 from ltlc.runtime.tracking import Track
 
 T = TypeVar("T")
@@ -32,14 +31,12 @@ def waiting_for(session: Session, track: Track) -> list[str]:
 def beginning(session: Session, track: Track) -> str:
     """When a property began, after the session, and what it had waited for."""
     assert track.began is not None
-    assert session.began is not None
-    after = seconds_text(track.began - session.began)
     pairs = zip(track.property.inputs, track.property.waits, strict=True)
     waited = (i for i, waits in pairs if waits and not isinstance(i, New))
     read = (r.topic for i in waited for r in _readings(session, i.signal))
     spoke = [topic for topic in dict.fromkeys(read) if topic not in track.skipped]
     when = f", when {' and '.join(spoke)} first spoke" if spoke else ""
-    return f"began at +{after} s{when}"
+    return f"began at {session.scale.text(track.began)}{when}"
 
 
 def absent(session: Session, name: str) -> list[Reading]:
@@ -107,6 +104,9 @@ def _remarks(session: Session, sampler: Sampler, wanted: Wanted) -> list[str]:
 
 
 def _absence(session: Session, reading: Reading) -> str:
+    for name in (reading.name, reading.topic):
+        if name in session.absences:
+            return session.absences[name]
     if reading.topic == reading.name:
         return f"no value of {reading.name}"
     messages = session.messages[reading.topic]

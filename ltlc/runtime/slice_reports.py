@@ -9,19 +9,14 @@ from heapq import nsmallest
 from itertools import islice
 from typing import Any
 
+from ltlc.runtime.documents import failure_report, json_value, moment_report
 from ltlc.runtime.episodes import latest
 from ltlc.runtime.properties import Moment, Opening
-from ltlc.runtime.reports import (
-    failure_report,
-    failure_text,
-    json_value,
-    moment_report,
-    printable,
-)
+from ltlc.runtime.reports import counted, failure_text, printable
 from ltlc.runtime.session import Session
 from ltlc.runtime.slice_ids import Ids, Violation
 from ltlc.runtime.slice_keys import Cut, Id
-from ltlc.runtime.times import NEVER, seconds, seconds_text
+from ltlc.runtime.times import NEVER, Scale, seconds, span_text
 from ltlc.runtime.tracking import Track
 from ltlc.semantics.verdicts import Verdict
 
@@ -73,6 +68,11 @@ class ToldSlices:
         self.as_new = as_new
         self._told = 0
 
+    @property
+    def _scale(self) -> Scale:
+        """How a reader is told times."""
+        return self.session.scale
+
     def topics(self) -> frozenset[str]:
         """Those that are read: what slices, and what the property reads of a slice."""
         return self.cut.read
@@ -93,7 +93,7 @@ class ToldSlices:
         return None if came is None else self._number(came)
 
     def _number(self, number: int) -> str:
-        return _counted(number, self.noun)
+        return counted(number, self.noun)
 
     def _named(self, id_: Id, opened: Sequence[Opening]) -> str:
         """A slice as a reader knows it."""
@@ -131,7 +131,7 @@ class ToldSlices:
 
     def _violated(self, id_: Id, each: Violation) -> str:
         lacks = LACKS if each.lacks_beginning else ""
-        return f"{id_text(id_)} at {seconds_text(each.failure.time)} s{lacks}"
+        return f"{id_text(id_)} at {self._scale.text(each.failure.time)}{lacks}"
 
     def untold(self) -> Iterator[tuple[str, str]]:
         """What there is to tell of each violation that was not told, also as JSON."""
@@ -176,12 +176,12 @@ class ToldSlices:
         return [*told, *self._more()]
 
     def _owed(self, each: Owed) -> str:
-        left = "" if each.left is None else f" ({seconds_text(each.left)} s left)"
+        left = "" if each.left is None else f" ({span_text(each.left)} left)"
         return f"{self._owing(each)}{left}{LACKS if each.lacks_beginning else ''}"
 
     def _owing(self, each: Owed) -> str:
         """For what something is owed, and since when."""
-        return f"{id_text(each.id)} since {seconds_text(each.since.time)} s"
+        return f"{id_text(each.id)} since {self._scale.text(each.since.time)}"
 
     def _more(self) -> Iterator[str]:
         """What there is to say of messages."""
@@ -204,7 +204,8 @@ class ToldSlices:
 
     def document(self) -> dict[str, Any]:
         """The ids in the JSON document of `ltlc run`."""
-        came = self._came()
+        came, zero = self._came(), self.session.beginning
+        constants = self.track.property.constants
         return {
             "keys": [key.name for key in self.cut.keys.values()],
             "ids": came,
@@ -213,12 +214,12 @@ class ToldSlices:
             "violated": [
                 {
                     "id": json_value(id_),
-                    "decided_at": failure_report(each.failure),
+                    "decided_at": failure_report(each.failure, zero, constants),
                     "may_lack_beginning": each.lacks_beginning,
                 }
                 for id_, each in self.ids.violated.items()
             ],
-            "owed": [owed_report(each) for each in self.owed()],
+            "owed": [owed_report(each, zero) for each in self.owed()],
             "left_out": self.ids.left_out,
             "without_id": self.ids.without_id,
             "messages": self.ids.messages,
@@ -227,7 +228,7 @@ class ToldSlices:
     def _figure(self, id_: Id, violation: Violation) -> str:
         of, failure = self.track.property, violation.failure
         label = f"{of.label}[{self._which} {self._named(id_, failure.opened)}]"
-        text = failure_text(replace(of, label=label), failure)
+        text = failure_text(replace(of, label=label), failure, self._scale)
         lacks = "Its beginning may be missing.\n" if violation.lacks_beginning else ""
         return f"{text}{lacks}"
 
@@ -240,7 +241,7 @@ class ToldSlices:
             "line": of.line,
             "id": json_value(id_),
             "verdict": Verdict.VIOLATED.value,
-            **moment_report(violation.failure),
+            **moment_report(violation.failure, self.session.beginning),
             "may_lack_beginning": violation.lacks_beginning,
         }
 
@@ -258,11 +259,11 @@ def listed_text(told: Sequence[str], number: int) -> str:
     return f"{', '.join(told)}{more}"
 
 
-def owed_report(each: Owed) -> dict[str, Any]:
+def owed_report(each: Owed, zero: int | None) -> dict[str, Any]:
     """What is owed, in the JSON document of `ltlc run`."""
     return {
         "id": json_value(each.id),
-        "open_since": moment_report(each.since),
+        "open_since": moment_report(each.since, zero),
         "left": None if each.left is None else seconds(each.left),
         "left_ns": each.left,
         "may_lack_beginning": each.lacks_beginning,
@@ -271,8 +272,4 @@ def owed_report(each: Owed) -> dict[str, Any]:
 
 def messages_text(number: int) -> str:
     """So many messages."""
-    return _counted(number, "message")
-
-
-def _counted(number: int, noun: str) -> str:
-    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
+    return counted(number, "message")

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
 from decimal import Decimal
+from enum import Enum
 
 SECOND = 10**9
 NEVER = 1 << 62
@@ -35,3 +38,50 @@ def seconds_text(time: int) -> str:
     whole, rest = divmod(abs(time), SECOND)
     sign = "-" if time < 0 else ""
     return f"{sign}{whole}.{rest:09}".rstrip("0").rstrip(".")
+
+
+class Times(Enum):
+    """How a reader is told times."""
+
+    OFFSET = "since the beginning of the recording"
+    ABSOLUTE = "in full"
+    BOTH = "since the beginning of the run, and of a violation in full, too"
+
+
+@dataclass(frozen=True, slots=True)
+class Scale:
+    """How times are written for a reader: since `zero`, or in full if that is None.
+
+    A time since `zero` is rounded to that many `digits` after the point: milliseconds,
+    or as many as it takes to tell the times apart that are shown together (`among`).
+    With `has_clock`, the time of what went wrong is written in full, too.
+    """
+
+    zero: int | None = None
+    digits: int = 3
+    has_clock: bool = False
+
+    def among(self, times: Iterable[int]) -> Scale:
+        """The same, with enough digits for no two of `times` to look alike."""
+        offsets = {time - (self.zero or 0) for time in times}
+        for digits in (self.digits, 6):
+            if len({_rounded(offset, digits) for offset in offsets}) == len(offsets):
+                return replace(self, digits=digits)
+        return replace(self, digits=9)
+
+    def text(self, time: int) -> str:
+        """A time of the run: `+15.752 s`."""
+        if self.zero is None:
+            return f"{seconds_text(time)} s"
+        offset = _rounded(time - self.zero, self.digits)
+        return f"{'+' if offset >= 0 else ''}{seconds_text(offset)} s"
+
+
+def _rounded(time: int, digits: int) -> int:
+    unit = int(10 ** (9 - digits))
+    return (time + unit // 2) // unit * unit
+
+
+def span_text(time: int) -> str:
+    """How long something takes, to the millisecond; what is less than one in full."""
+    return f"{seconds_text(_rounded(time, 3) or time)} s"

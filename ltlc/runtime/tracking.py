@@ -98,6 +98,11 @@ class Track(Course):
         return sum(scope.count for scope in scopes)
 
     @property
+    def times_violated(self) -> int:
+        """How many violations are known; no more than the first is looked for here."""
+        return int(self.verdict is Verdict.VIOLATED)
+
+    @property
     def never_triggered(self) -> bool:
         """Whether the property holds only because no scope of it ever opened."""
         holds = self.verdict in (Verdict.SATISFIED, Verdict.PRESUMABLY_SATISFIED)

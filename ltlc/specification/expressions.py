@@ -185,11 +185,13 @@ class When:
 class Number:
     """A constant number: a double, or an integer that is none. A `single` one is a binary32, and written as such.
 
-    Equal numbers are the same: 1 / (x * 0) and 1 / (x * -0) are different expressions.
+    Equal numbers are the same: 1 / (x * 0) and 1 / (x * -0) are different expressions. If it was written as a constant
+    of a message, `constants` are the values that go by such names there.
     """
 
     value: float
     single: bool = False
+    constants: tuple[tuple[float, str], ...] = ()
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Number) and self._exact == other._exact

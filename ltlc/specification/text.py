@@ -18,6 +18,7 @@ from ltlc.specification.expressions import (
     Boolean,
     Call,
     Comparison,
+    Condition,
     Count,
     Current,
     Element,
@@ -187,3 +188,13 @@ def predicate_form(predicate: Formula) -> tuple[str, Strength]:
             return f"{predicate_text(left, Strength.OR)} or {predicate_text(right, Strength.OR)}", Strength.OR
         case _:
             raise TypeError(f"not a state predicate: {predicate!r}")
+
+
+def with_constant(written: str, condition: Condition) -> str:
+    """A condition, with the name of the constant of a message that its author compared with: `level == ERROR (2)`."""
+    match condition:
+        case Comparison(_, _, Number(value, constants=constants)) if constants and not condition.margin:
+            name = dict(constants).get(value)
+            stem = written.removesuffix(number_text(value))
+            return written if name is None or stem == written else f"{stem}{name} ({number_text(value)})"
+    return written

@@ -21,7 +21,7 @@ from ltlc.analysis.comparison.results import (
 from ltlc.automata.queries import Size
 from ltlc.base.limits import Exceeded
 from ltlc.base.render.json import plain
-from ltlc.runtime.reports import json_value
+from ltlc.runtime.documents import json_value
 from ltlc.semantics.instants import Instant
 from ltlc.semantics.words import Letter, Word
 

@@ -22,9 +22,9 @@ from ltlc.backends.python.monitors import (
     opening_names,
     runtime_class,
 )
+from ltlc.backends.python.reasons import Reasons
 from ltlc.backends.spelling import Speller
-from ltlc.backends.steps import clock_names
-from ltlc.backends.trees import INDENT, Call, Code, Text, prose
+from ltlc.backends.trees import INDENT, Code, prose
 from ltlc.base.source import Source
 from ltlc.compiler import Compiled
 from ltlc.program.as_new import states_as_new
@@ -32,15 +32,13 @@ from ltlc.program.expressions import Apply, reads_of
 from ltlc.program.expressions import Expression as Value
 from ltlc.program.expressions import parts as parts_of
 from ltlc.program.functions import ROWS, Nan
-from ltlc.program.lowering import condition, has_sample, lowered, predicate, read, sides
+from ltlc.program.lowering import has_sample, lowered, predicate, read
 from ltlc.program.machine import Machine
-from ltlc.program.properties import words
 from ltlc.runtime import MODULES
 from ltlc.semantics import properties as p
 from ltlc.semantics.denotation import opens_by_itself
 from ltlc.semantics.ltl import Formula
-from ltlc.semantics.timed_atoms import Clock, Historically, atoms_within, names_within, timed_atoms
-from ltlc.semantics.trackers import trackers_of
+from ltlc.semantics.timed_atoms import atoms_within, names_within, timed_atoms
 from ltlc.semantics.verdicts import Verdict
 from ltlc.specification.expressions import (
     Current,
@@ -248,40 +246,14 @@ def _ages(compiled: Compiled) -> list[Group | str]:
 
 def _reasons(plan: _Plan, compiled: Compiled) -> list[Group | str]:
     """What a violation is explained by: the conditions, whose function becomes a block, and what they decide."""
-    specification, told = compiled.specification, words(compiled.specification, compiled.machine)
-    conditions = {atom.name: atom.condition for atom in specification.atoms}
-
-    def write(speller: Speller) -> list[Code]:
-        found = [(literal(specification.as_written(atom)), conditions[atom]) for atom in told.atoms]
-        return [
-            Call("Condition", (Text(text), speller.code(condition(c)), *map(speller.code, sides(c))))
-            for text, c in found
-        ]
-
+    specification, reasons = compiled.specification, Reasons(compiled)
     arguments: list[Group | str] = []
-    if told.atoms:  # some read nothing but ages, which are no conditions
+    if reasons.asked:  # some read nothing but ages, which are no conditions
         name = plan.names.unique(f"{variable(specification.label)}_conditions")
         meaning = f"The conditions of {specification.label}, and what they compare."
-        _function(plan, name, specification.reads(), "Iterable[Condition]", write, meaning)
+        _function(plan, name, specification.reads(), "Iterable[Condition]", reasons.conditions, meaning)
         arguments.append(f"conditions={name}")
-
-    if compiled.machine.clocks:
-        arguments.append(tuple_of(_clocks(compiled), "clocks=(", wide=True))
-    arguments.append(tuple_of(map(str, told.steps), "edges=("))
-    if compiled.machine.is_timed:
-        arguments.append(tuple_of(map(str, told.expires), "held_edges=("))
-    return [*arguments, tuple_of((str(tuple(decision)) for decision in told.decisions), "decisions=(")]
-
-
-def _clocks(compiled: Compiled) -> Iterator[Group]:
-    """The clocks of the program, with what they decide: of `age(s) <= D` and the like, that it holds no more."""
-    clocks = [tracker for tracker in trackers_of(compiled.formula) if tracker.bounds]
-    for name, tracker in zip(clock_names(compiled.machine), clocks, strict=False):  # those of counts come after them
-        late = isinstance(tracker.subject, Clock | Historically)
-        texts, bounds = tuple_of(map(literal, tracker.atoms)), tuple_of(map(str, tracker.bounds))
-        yield Group("Clock(", (literal(name), texts, bounds, str(late)), ")")
-    for name, count in zip(clock_names(compiled.machine)[len(clocks) :], compiled.specification.counts(), strict=True):
-        yield Group("Clock(", (literal(name), tuple_of([literal(count.name)]), "()", "False"), ")")
+    return [*arguments, *reasons.arguments()]
 
 
 def _input(wanted: Input) -> str:

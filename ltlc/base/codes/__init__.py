@@ -163,6 +163,7 @@ CODES: dict[str, Code] = {
     "LTL813": Code("bag-files", "The files of a bag differ from its metadata", WARNING),
     "LTL814": Code("message-times", "Messages were recorded out of order, or at the same time", NOTE),
     "LTL815": Code("header-stamps", "Messages have no time in a header", WARNING),
+    "LTL816": Code("from-before", "The time of `--from` is before the recording", WARNING),
     "LTL818": Code("definitions", "Which definitions are used to read messages", NOTE),
     "LTL705": Code("not-certified", "The monitor could not be certified"),
     "LTL706": Code("unforeseen-letter", "Some values lead to a letter that the alphabet excludes"),

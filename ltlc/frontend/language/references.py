@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import takewhile
 
 from ltlc.base.diagnostics import Help, Label
 from ltlc.base.mends import put, respell, write, writing
@@ -20,6 +21,7 @@ from ltlc.frontend.language.values import Array, Message, Orientation, Scalar, T
 from ltlc.frontend.syntax import tree as syntax
 from ltlc.frontend.syntax.lexer import FUNCTIONS, KEYWORDS, RESERVED, TEMPORAL, next_token
 from ltlc.inputs.messages.definitions import Constant
+from ltlc.inputs.messages.definitions import Message as Definition
 from ltlc.specification.expressions import Boolean, Current, Each, Field, Number, Slice, String, inputs
 from ltlc.specification.functions import INSIDE
 from ltlc.specification.specification import fields
@@ -275,9 +277,9 @@ def message_constant(checker: Checker, node: syntax.MessageConstant) -> Value | 
     if not isinstance(message, str):
         checker.diagnostics.append(message)
         return None
-    constants = checker.types.messages[message].constants
-    if node.name.text in constants:
-        return _constant_value(constants[node.name.text])
+    definition, name = checker.types.messages[message], node.name.text
+    if name in definition.constants:
+        return _constant_value(definition.constants[name], _names(name, definition))
     _no_constant(checker, node.name, [message], message)
     return None
 
@@ -306,7 +308,8 @@ def constant_beside(checker: Checker, node: syntax.Reference, other: Value | Non
     if len(found) < len(messages) or len(set(found.values())) > 1:
         _ambiguous(checker, node, messages, list(found))
         return None
-    return member(checker, node.steps[1:], _constant_value(next(iter(found.values()))))
+    message, value = next(iter(found.items()))
+    return member(checker, node.steps[1:], _constant_value(value, _names(written, checker.types.messages[message])))
 
 
 def _origins(checker: Checker, value: Value | None) -> list[str]:
@@ -335,10 +338,25 @@ def _no_constant(checker: Checker, name: syntax.Node, messages: list[str], shown
     checker.report("LTL214", name.span, f"`{shown}` has no constant `{written}`", help=help)
 
 
-def _constant_value(found: Constant) -> Value:
+def _names(written: str, message: Definition) -> tuple[tuple[float, str], ...]:
+    """What values go by the names of constants of `message`; of several names, that most like the one `written`."""
+    names: dict[float, str] = {}
+    for name, value in message.constants.items():
+        if not isinstance(value, str | bool):
+            alike = [name, *([names[value]] if value in names else [])]
+            names[value] = max(alike, key=lambda each: _common(each, written))
+    return tuple(names.items())
+
+
+def _common(left: str, right: str) -> int:
+    """How many characters two texts begin with alike."""
+    return sum(1 for _ in takewhile(lambda pair: pair[0] == pair[1], zip(left, right, strict=False)))
+
+
+def _constant_value(found: Constant, names: tuple[tuple[float, str], ...]) -> Value:
     if isinstance(found, bool):
         return Truth(Boolean(found))
-    return Text(String(found)) if isinstance(found, str) else Scalar(Number(found))
+    return Text(String(found)) if isinstance(found, str) else Scalar(Number(found, constants=names))
 
 
 def member(checker: Checker, steps: Sequence[syntax.Step], base: Value | None) -> Value | None:

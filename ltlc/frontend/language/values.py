@@ -202,7 +202,7 @@ def beside(expression: Expression, other: Expression) -> Expression:
         case Kind.SINGLE:
             return Number(SINGLES.nearest(expression.value), single=True)
         case Kind.DOUBLE:
-            return Number(as_double(expression.value))
+            return replace(expression, value=as_double(expression.value))
         case _:
             return expression
 

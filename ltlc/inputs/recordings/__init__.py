@@ -22,6 +22,7 @@ from ltlc.inputs.recordings.rows import RecordingError, failure
 from ltlc.inputs.recordings.signals import FromTable, Table
 from ltlc.inputs.recordings.text import COMPRESSED
 from ltlc.runtime.times import seconds_text
+from ltlc.semantics.durations import Nanoseconds
 from ltlc.specification.expressions import Signal
 
 __all__ = ["Block", "Recording", "RecordingError", "is_recording", "open_recording"]
@@ -38,6 +39,11 @@ class Recording(Protocol):
     @property
     def definitions(self) -> Mapping[str, str]:
         """Who defines the messages on each topic that is read, if it has messages: `the recording`, `ROS 2 Humble`."""
+        ...
+
+    @property
+    def beginning(self) -> Nanoseconds | None:
+        """When it begins, if that is known before it is read."""
         ...
 
     def absence(self, name: str) -> str:
@@ -88,8 +94,8 @@ def open_recording(path: Path, signals: Mapping[str, Signal], reading: ReadOptio
 
     Raises RecordingError if it cannot be read, cannot be a recording, or nothing of it can be wanted.
     """
-    since, until = reading.since, reading.until
-    if since is not None and until is not None and since > until:
+    since, until = reading.limits(0)
+    if type(reading.since) is type(reading.until) and since is not None and until is not None and since > until:
         message = f"`--from`, {seconds_text(since)} s, is after `--until`, {seconds_text(until)} s"
         raise failure("LTL804", path, message, "swap the two times")
     if not path.exists():

@@ -41,7 +41,10 @@ def failure(code: str, path: Path, message: str, help: str = "") -> RecordingErr
 def outside(path: Path, is_before: bool) -> RecordingError:
     """An error about a recording that has nothing between `--from` and `--until`: it ends before, or begins after."""
     which = "ends before the time of `--from`" if is_before else "begins after the time of `--until`"
-    return failure("LTL804", path, f"the recording {which}", "give a time of the recording's clock")
+    help = (
+        f"give a time of the recording's clock, or `{'--from' if is_before else '--until'} +10`: 10 s after it begins"
+    )
+    return failure("LTL804", path, f"the recording {which}", help)
 
 
 LONGEST_GAP = 366 * 86_400 * SECOND

@@ -187,6 +187,11 @@ class FromTable:
         return did_you_mean(name, self.columns)
 
     @property
+    def beginning(self) -> Nanoseconds | None:
+        """That of its first row, which nothing says before."""
+        return None
+
+    @property
     def definitions(self) -> Mapping[str, str]:
         """Nobody: a table has values, and no messages."""
         return {}

@@ -17,6 +17,7 @@ from ltlc.interfaces.pages.machines import machine_picture
 from ltlc.monitoring.judging.run import RunReport
 from ltlc.runtime import reports
 from ltlc.runtime.session import Session
+from ltlc.runtime.times import Scale
 from ltlc.runtime.tracking import Track
 from ltlc.semantics.verdicts import Verdict
 
@@ -51,12 +52,12 @@ def run_html(report: RunReport, page: str = "") -> str:
     head = ("property", "verdict", "at", "details")
     table = Table(head, tuple(_verdict(session, track) for track in session.tracks))
     violated = [track for track in session.tracks if track.verdict is Verdict.VIOLATED]
-    figures = ((f"The failing state of {printable(t.property.label)}", reports.figure(t)) for t in violated)
+    figures = ((f"The failing state of {printable(t.property.label)}", reports.figure(session, t)) for t in violated)
     return as_fragment([table]) + _folded(figures) + (_frame(page) if page else "")
 
 
 def _verdict(session: Session, track: Track) -> tuple[str, ...]:
-    at = "" if track.decided_at is None else reports.moment_text(track.decided_at)
+    at = "" if track.decided_at is None else reports.moment_text(track.decided_at, session.scale)
     remarks = "; ".join(reports.explanation(session, track))
     return printable(track.property.label), VERDICTS[track.verdict], at, remarks
 
@@ -79,7 +80,7 @@ def _picture(compiled: Compiled) -> str:
     """The monitor of a property, and what the letters in its labels stand for."""
     label = printable(compiled.specification.label)
     name = f"monitor-{sha256(repr((label, compiled.formula)).encode()).hexdigest()[:12]}"
-    picture = machine_picture(compiled, None, 0, name)
+    picture = machine_picture(compiled, None, Scale(), name)
     letters = as_fragment([Table(("", "condition"), picture.letters)]) if picture.letters else ""
     remark = f"<p>{escape(picture.remark)}</p>\n" if picture.remark else ""
     return f"<figure><figcaption><b>{escape(label)}</b></figcaption>{picture.svg}{remark}{letters}</figure>\n"

@@ -23,7 +23,7 @@ from ltlc.runtime.properties import Change
 from ltlc.runtime.rows import ByRows, Route
 from ltlc.runtime.sampling import Value
 from ltlc.runtime.session import Session
-from ltlc.runtime.times import seconds_text
+from ltlc.runtime.times import Times, seconds_text
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.verdicts import Verdict
 from ltlc.specification.expressions import Signal
@@ -57,8 +57,8 @@ def monitor(
       robot.velocity: 2.5
     Because:
       more than 1 s since the first "robot.velocity > 2" without "robot.velocity < 1": true
-    Until then still open since 0.1 s (step 1): eventually robot.velocity < 1 within 1 s
-    At 1.100000001 s (after step 1).
+    Unmet since +0.1 s (step 1): eventually robot.velocity < 1 within 1 s
+    At +1.1 s (after step 1).
 
     A `str` is the text of a specification, a `pathlib.Path` a file; otherwise as `LiveRun`. `budget` is what the
     translation of each property may use. Raises UnusableInput and SpotMissing.
@@ -210,7 +210,9 @@ class LiveRun:
         """Judges a session to which samples of `columns` come; what they tell nothing of comes in itself."""
         signals = self._judge.signals.values()
         untold = {signal.name for signal in signals if not any(name in columns for name in _family(signal))}
-        return ByRows(Session(self._judge.plan({*columns, *untold})))
+        session = Session(self._judge.plan({*columns, *untold}))
+        session.times = Times.BOTH
+        return ByRows(session)
 
 
 @dataclass(frozen=True, slots=True)

@@ -45,7 +45,7 @@ class PropertyResult:
 def result_of(session: Session, track: Track) -> PropertyResult:
     """What is known of the property that `track` follows in `session`."""
     is_violated = track.verdict is Verdict.VIOLATED
-    told = reports.figure(track).rstrip() if is_violated else reports.sentence(session, track)
+    told = reports.figure(session, track).rstrip() if is_violated else reports.sentence(session, track)
     of = track.property
     return PropertyResult(
         of.label, of.line, of.text, track.verdict, track.steps, track.episodes, track.decided_at, track.open_since, told

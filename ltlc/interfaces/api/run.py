@@ -18,7 +18,7 @@ from ltlc.inputs.recordings.reading import ReadOptions, Stamp
 from ltlc.inputs.recordings.signals import FromTable
 from ltlc.interfaces.api.prepare import Prepared, Text, encoding_of, folders, prepare, read
 from ltlc.interfaces.api.results import Run
-from ltlc.interfaces.api.times import Seconds, in_nanoseconds, needs_time
+from ltlc.interfaces.api.times import Seconds, limit_of, needs_time
 from ltlc.monitoring.judging.run import Judge, Open
 
 Row = Mapping[str, object]
@@ -65,13 +65,13 @@ def run(
     Failing state:
       robot.velocity: 3.0
     Because:
-      robot.velocity > 2: true, comparing 3.0 with 2.0
-    At 0.1 s (step 1).
+      robot.velocity > 2: true, 3.0 > 2.0 by 1
+    At +0.1 s (step 1).
 
     A `str` is the text of a specification, a `pathlib.Path` a file; message types that a bag defines are known in it.
-    Of the recording, `since` and `until` are the first and the last time that count, in its seconds; of a bag, `stamp`
-    says whether messages have the time of `log` or that in their `header`. `budget` is what the translation of each
-    property may use.
+    Of the recording, `since` and `until` are the first and the last time that count, in its seconds, or, as in "+10",
+    since its beginning; of a bag, `stamp` says whether messages have the time of `log` or that in their `header`.
+    `budget` is what the translation of each property may use.
 
     Raises UnusableInput if nothing can be judged, and SpotMissing.
     """
@@ -110,8 +110,8 @@ def run_each(
     files = _files(ahead)
     prepared = prepare(read(specification), paths, encoding_of(encoding), budget or Budget(), recordings=files)
     del ahead, files  # they would keep what the others have passed
-    times = (None if each is None else in_nanoseconds(each) for each in (since, until))
-    reading = ReadOptions(_stamp(stamp), tuple(paths), *times)
+    first, last = (None if each is None else limit_of(each) for each in (since, until))
+    reading = ReadOptions(_stamp(stamp), tuple(paths), first, last)
     judge = Judge(prepared.compiled, prepared.specification, reading, remarks=prepared.late)
     return (_judged(prepared, judge, recording) for recording in recordings)
 

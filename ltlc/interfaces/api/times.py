@@ -7,8 +7,7 @@ from decimal import Decimal
 
 from ltlc.base.errors import UnusableInput
 from ltlc.compiler import Compiled
-from ltlc.runtime.times import nanoseconds
-from ltlc.semantics.durations import Nanoseconds
+from ltlc.inputs.recordings.reading import Limit, limit
 from ltlc.semantics.encodings import reads_time
 from ltlc.specification.expressions import Signal, Slope
 from ltlc.specification.specification import Specification
@@ -17,10 +16,10 @@ Seconds = float | str | Decimal
 """A time or a duration as it is written: 0.1 is a tenth of a second, whatever the nearest double is."""
 
 
-def in_nanoseconds(seconds: Seconds) -> Nanoseconds:
-    """So many `seconds`. Raises UnusableInput if that is no time."""
+def limit_of(seconds: Seconds) -> Limit:
+    """A time of a recording, or, as in "+10", one since its beginning. Raises UnusableInput if that is no time."""
     try:
-        return nanoseconds(str(seconds))
+        return limit(str(seconds))
     except ValueError:
         raise UnusableInput((), f"{seconds!r} is not a time in seconds, such as 12.5") from None
 

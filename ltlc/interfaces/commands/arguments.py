@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ltlc.semantics.encodings import ENCODINGS
+
+if TYPE_CHECKING:
+    from ltlc.inputs.recordings.reading import Limit, ReadOptions
 
 
 def add_specification(parser: argparse.ArgumentParser, help: str = "the specification file; `-` for stdin") -> None:
@@ -72,13 +75,15 @@ def add_recordings(parser: argparse.ArgumentParser) -> None:
         dest="since",
         type=time,
         metavar="TIME",
-        help="start at TIME, in seconds as in the recording (default: that of its first row)",
+        help="start at TIME, in seconds as in the recording, or since its beginning, as in +10 "
+        "(default: that of its first row)",
     )
     parser.add_argument(
         "--until",
         type=time,
         metavar="TIME",
-        help="end at TIME, in seconds as in the recording (default: that of its last row)",
+        help="end at TIME, in seconds as in the recording, or since its beginning, as in +10 "
+        "(default: that of its last row)",
     )
     parser.add_argument(
         "--stamp",
@@ -86,6 +91,20 @@ def add_recordings(parser: argparse.ArgumentParser) -> None:
         default="log",
         help="in a bag, take the time at which messages were recorded, or that in their headers (default: %(default)s)",
     )
+    parser.add_argument(
+        "--absolute",
+        action="store_true",
+        help="in text, show times in full, as in the recording, not since its beginning",
+    )
+
+
+def reading(options: argparse.Namespace) -> ReadOptions:
+    """How recordings are read."""
+    from ltlc.inputs.recordings.reading import ReadOptions, Stamp
+    from ltlc.runtime.times import Times
+
+    times = Times.ABSOLUTE if options.absolute else Times.OFFSET
+    return ReadOptions(Stamp(options.stamp), tuple(map(str, options.msg_path)), options.since, options.until, times)
 
 
 def add_jobs(parser: Any) -> None:
@@ -107,14 +126,14 @@ def budget(text: str) -> tuple[float, int]:
     return found
 
 
-def time(text: str) -> int:
-    """A time of a recording, in nanoseconds."""
-    from ltlc.runtime.times import nanoseconds
+def time(text: str) -> Limit:
+    """A time of a recording, or one that counts from its beginning."""
+    from ltlc.inputs.recordings.reading import limit
 
     try:
-        return nanoseconds(text)
+        return limit(text)
     except ValueError:
-        raise argparse.ArgumentTypeError(f"{text!r} is not a time in seconds, such as 12.5") from None
+        raise argparse.ArgumentTypeError(f"{text!r} is not a time in seconds, such as 12.5 or +12.5") from None
 
 
 def names(text: str) -> list[str]:

@@ -28,8 +28,9 @@ from ltlc.monitoring.judging.run import Judge
 
 def run_several(judge: Judge, found: Found, options: argparse.Namespace) -> int:
     """Judge the recordings that were found, each by itself; the exit code is the worst: 2, 1, 3, 0."""
-    if options.output or options.timing:
-        return unusable(f"--{'output' if options.output else 'timing'} takes a single recording")
+    for name in ("output", "timing", "all"):
+        if getattr(options, name):
+            return unusable(f"--{name} takes a single recording")
     if options.report and (options.results or options.engine):
         return unusable("--report cannot be combined with --results and --engine; omit these, or use --summary")
     try:

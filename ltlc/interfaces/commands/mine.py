@@ -8,7 +8,6 @@ from pathlib import Path
 
 from ltlc.automata import Budget, SpotMissing
 from ltlc.base.files import refuse_unwritable, write_text
-from ltlc.inputs.recordings.reading import ReadOptions, Stamp
 from ltlc.interfaces.commands import arguments
 from ltlc.interfaces.commands.common import FINDING, UNUSABLE, overwritten, refused, report, unusable, without_notes
 from ltlc.interfaces.commands.progress import progress, saying
@@ -59,8 +58,7 @@ def run(options: argparse.Namespace) -> int:
         return refused(options.write)
     try:
         with progress("reading recordings", options.quiet) as watch:
-            message_paths = tuple(map(str, options.msg_path))
-            reading = ReadOptions(Stamp(options.stamp), message_paths, options.since, options.until)
+            reading = arguments.reading(options)
             mined = mine(template, paths, Budget(*options.budget), watch, options.each, reading)
     except SpotMissing as error:
         return unusable(str(error))

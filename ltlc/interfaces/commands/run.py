@@ -11,14 +11,13 @@ from time import perf_counter_ns
 
 from ltlc.base.files import refuse_unwritable, write_all
 from ltlc.inputs.recordings import Block
-from ltlc.inputs.recordings.reading import ReadOptions, Stamp
 from ltlc.interfaces.commands import arguments
 from ltlc.interfaces.commands.common import OK, compile_file, overwritten, refused, report, unusable, unwritable
 from ltlc.interfaces.commands.progress import saying
 from ltlc.monitoring.columns.timing import timing
 from ltlc.monitoring.judging.run import Judge, Watcher
 from ltlc.runtime.reports import printable
-from ltlc.runtime.times import seconds_text
+from ltlc.runtime.times import Scale
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -29,6 +28,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     arguments.add_recordings(parser)
     _add_campaign(parser.add_argument_group("many recordings"))
     parser.add_argument("--format", choices=("text", "json", "junit"), default="text")
+    parser.add_argument("--all", action="store_true", help="in text, list all violations, not only the first ones")
     parser.add_argument("--verdicts", action="store_true", help="with JSON, include the verdict after each step")
     parser.add_argument(
         "--timing",
@@ -91,13 +91,11 @@ def run(options: argparse.Namespace) -> int:
     prepared = compile_file(options, paths)
     if isinstance(prepared, int):
         return prepared
-    message_paths = tuple(map(str, options.msg_path))
-    reading = ReadOptions(Stamp(options.stamp), message_paths, options.since, options.until)
     keep_trails = bool(options.report or options.output)
     judge = Judge(
         prepared.compiled,
         prepared.specification,
-        reading,
+        arguments.reading(options),
         options.verdicts,
         keep_trails,
         remarks=prepared.late,
@@ -119,7 +117,7 @@ def _run_one(judge: Judge, path: Path, options: argparse.Namespace) -> int:
     with _progress(path, options.quiet) as watchers:
         found = (page or judge).judge(path, watchers)
     report(found.diagnostics)
-    form = {"text": found.text, "json": found.json, "junit": found.junit}[options.format]
+    form = {"text": lambda: found.text(options.all), "json": found.json, "junit": found.junit}[options.format]
     start = perf_counter_ns()
     sys.stdout.write(form())
     if options.timing and found.blocks is not None:
@@ -142,14 +140,15 @@ def _run_one(judge: Judge, path: Path, options: argparse.Namespace) -> int:
 @contextmanager
 def _progress(path: Path, quiet: bool) -> Iterator[list[Watcher]]:
     """What says on a terminal how far a recording has been judged."""
-    rows = 0
+    rows, scale = 0, Scale()
     with saying(f"judging {printable(path.name)}", quiet) as say:
 
         def watch(block: Block) -> None:
-            nonlocal rows
-            rows += len(block.times)
+            nonlocal rows, scale
             if say is not None and len(block.times):
-                say(f"{rows:,} rows, up to {seconds_text(int(block.times[-1]))} s")
+                scale = scale if rows else Scale(int(block.times[0]))
+                say(f"{rows + len(block.times):,} rows, up to {scale.text(int(block.times[-1]))}")
+            rows += len(block.times)
 
         yield [watch]
 

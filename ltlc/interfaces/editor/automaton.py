@@ -11,6 +11,7 @@ from ltlc.backends.templates import template
 from ltlc.compiler import compile_specification
 from ltlc.interfaces.pages.machines import machine_picture
 from ltlc.runtime.reports import printable
+from ltlc.runtime.times import Scale
 from ltlc.semantics.encodings import Encoding
 from ltlc.specification.specification import PropertySpecification, Specification
 
@@ -24,7 +25,7 @@ def automaton_page(
     """
     alone = replace(specification, properties=(property_,))
     compiled, problems = compile_specification(alone, encoding, budget)
-    picture = machine_picture(compiled[0], None, 0, "monitor") if compiled else None
+    picture = machine_picture(compiled[0], None, Scale(), "monitor") if compiled else None
     return template(__package__, "automaton.html.jinja", escape=True).render(
         version=__version__,
         label=printable(property_.label),

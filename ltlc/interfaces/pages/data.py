@@ -5,7 +5,7 @@ from __future__ import annotations
 import base64
 import math
 import zlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -15,8 +15,10 @@ from numpy.typing import NDArray
 from ltlc.inputs.recordings.trails import Trail
 from ltlc.interfaces.pages.panels import Drawing, Panel
 from ltlc.interfaces.pages.series import Series
+from ltlc.monitoring.later import Violation
 from ltlc.runtime.reports import moment_text, printable
-from ltlc.runtime.times import SECOND, seconds_text
+from ltlc.runtime.session import Session
+from ltlc.runtime.times import Scale, span_text
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.specification.expressions import Expression
 
@@ -44,21 +46,24 @@ class Data:
 
 def timeline(
     data: Data,
-    began: Nanoseconds,
-    ended: Nanoseconds,
+    session: Session,
     trail: Trail,
+    violations: Sequence[Violation],
     panels: list[Panel],
     series: Mapping[Expression, Series],
 ) -> dict[str, Any]:
-    """The timeline of one property; times are ns since `began`, as numbers."""
+    """The timeline of one property; times are ns since the session began, as numbers."""
+    began, ended, scale = session.began, session.time, session.scale
+    assert began is not None
+    assert ended is not None
     return {
-        "clock": _clock(began),
+        "clock": _clock(scale, began),
         "end": ended - began,
         "changes": [
             {
                 "time": change.moment.time - began,
                 "verdict": change.current.value,
-                "text": moment_text(change.moment),
+                "text": moment_text(change.moment, scale),
             }
             for change in trail.changes
         ],
@@ -79,23 +84,21 @@ def timeline(
             }
             for deadline in trail.deadlines
         ],
+        "violations": [
+            {
+                "from": each.moment.time - began,
+                "to": (ended if each.until is None else each.until) - began,
+                "text": span_text(lasted) if (lasted := each.lasted(ended)) else "",
+            }
+            for each in violations
+        ],
         "panels": [_panel(data, began, panel, series) for panel in panels],
     }
 
 
-LATEST = 10**7 * SECOND
-"""A recording that begins later has the time of day; in pictures of it, seconds since its beginning are shown."""
-
-
-def _clock(began: Nanoseconds) -> dict[str, Any]:
-    """What is added to times where they are shown: nothing, if they are shown since the beginning."""
-    is_since = abs(began) > LATEST
-    return {"zero": 0 if is_since else began, "since": is_since}
-
-
-def clock_text(time: Nanoseconds, began: Nanoseconds) -> str:
-    """A time of a recording that `began` then, as pictures show it."""
-    return f"+{seconds_text(time - began)} s" if abs(began) > LATEST else f"{seconds_text(time)} s"
+def _clock(scale: Scale, began: Nanoseconds) -> dict[str, Any]:
+    """What is added to times where they are shown, and whether they are since the beginning."""
+    return {"zero": began - (scale.zero or 0), "since": scale.zero is not None}
 
 
 def _panel(data: Data, began: Nanoseconds, panel: Panel, series: Mapping[Expression, Series]) -> dict[str, Any]:

@@ -105,6 +105,10 @@ class Lanes {
     }
   }
 
+  drawViolations({ top }) {
+    for (const each of this.content.violations) this.drawBand(top, BAR, each.from, each.to, "violated", each.text);
+  }
+
   // When what has no end ended: with the property, or with the run.
   ended(to) {
     if (to !== null) return to;

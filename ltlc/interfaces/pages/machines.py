@@ -8,12 +8,11 @@ from dataclasses import dataclass, replace
 from ltlc.backends.guards import Cube, TooManyCubesError, cubes
 from ltlc.compiler import Compiled
 from ltlc.inputs.recordings.trails import Trail
-from ltlc.interfaces.pages.data import clock_text
 from ltlc.interfaces.pages.graphs import Edge, graph_svg
 from ltlc.program.properties import Words, words
 from ltlc.runtime.properties import Moment
 from ltlc.runtime.reports import printable
-from ltlc.semantics.durations import Nanoseconds
+from ltlc.runtime.times import Scale
 from ltlc.semantics.monitor import Monitor, Target
 from ltlc.semantics.trackers import trackers_of
 
@@ -30,7 +29,7 @@ class Picture:
     remark: str
 
 
-def machine_picture(compiled: Compiled, trail: Trail | None, began: Nanoseconds, name: str) -> Picture:
+def machine_picture(compiled: Compiled, trail: Trail | None, scale: Scale, name: str) -> Picture:
     """The monitor of a property, and the edges of it that are in `trail`, of a recording that `began` then.
 
     Without a trail, the monitor by itself. `name` is that of the picture on its page.
@@ -41,7 +40,7 @@ def machine_picture(compiled: Compiled, trail: Trail | None, began: Nanoseconds,
     found = (*_at_steps(told), *_at_clock_steps(told, len(compiled.machine.clocks)))
     if trail is None:
         return _alone(told, found, named, name)
-    edges = [_taken(edge, trail.edges, began) for edge in found]
+    edges = [_taken(edge, trail.edges, scale) for edge in found]
     remark = ""
     if len(told.verdicts) > MOST_STATES:
         edges = [edge for edge in edges if edge.taken]
@@ -68,12 +67,12 @@ def _letter(number: int) -> str:
     return chr(ord("A") + number % 26) + (str(number // 26) if number > 25 else "")
 
 
-def _taken(edge: Edge, taken: Mapping[tuple[int, int], Moment], began: Nanoseconds) -> Edge:
+def _taken(edge: Edge, taken: Mapping[tuple[int, int], Moment], scale: Scale) -> Edge:
     moment = taken.get((edge.source, edge.target))
     if moment is None or moment.by_time != edge.by_time:
         return edge
     order = list(taken).index((edge.source, edge.target)) + 1
-    return replace(edge, taken=f"{order}. at {clock_text(moment.time, began)}")
+    return replace(edge, taken=f"{order}. at {scale.text(moment.time)}")
 
 
 def _at_steps(told: Words) -> Iterator[Edge]:

@@ -10,10 +10,10 @@ from itertools import pairwise
 
 import numpy as np
 
-from ltlc.interfaces.pages.data import clock_text
 from ltlc.interfaces.pages.series import Numbers, Series, Times
 from ltlc.runtime.functions import inside_of
 from ltlc.runtime.reports import printable
+from ltlc.runtime.times import Scale
 from ltlc.runtime.tracking import Track
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.verdicts import Verdict
@@ -82,7 +82,7 @@ def _is_recorded(call: Call) -> bool:
     return bool(read) and not has_elements and not any(isinstance(each, Opening) for each in read)
 
 
-def map_of(course: Course, series: Mapping[Expression, Series], began: Nanoseconds, track: Track) -> Map:
+def map_of(course: Course, series: Mapping[Expression, Series], scale: Scale, track: Track) -> Map:
     """The zones of a course of the property of `track`, and where the point went in a recording that `began` then."""
     violated_at = track.decided_at.time if track.decided_at and track.verdict is Verdict.VIOLATED else None
     visits, left_out = _visits(course, series)
@@ -93,8 +93,8 @@ def map_of(course: Course, series: Mapping[Expression, Series], began: Nanosecon
         *_corner_texts(frame),
         *(_zone(frame, name, corners) for name, corners in course.zones.items()),
         *_path(frame, visits),
-        *(_crossing(frame, before, after, began) for before, after in crossings[:MOST_CROSSINGS]),
-        *_end_marks(frame, visits, violated_at, began),
+        *(_crossing(frame, before, after, scale) for before, after in crossings[:MOST_CROSSINGS]),
+        *_end_marks(frame, visits, violated_at, scale),
     ]
     size = f'width="{frame.width:.0f}" height="{frame.height:.0f}" viewBox="0 0 {frame.width:.0f} {frame.height:.0f}"'
     head = f'<svg xmlns="http://www.w3.org/2000/svg" {size} class="map" font-family="sans-serif" font-size="11">'
@@ -103,7 +103,7 @@ def map_of(course: Course, series: Mapping[Expression, Series], began: Nanosecon
         remarks.append(f"{len(visits):,} of {left_out + len(visits):,} points of the path are drawn.")
     if len(crossings) > MOST_CROSSINGS:
         remarks.append(f"{MOST_CROSSINGS} of {len(crossings):,} places where it enters or leaves a zone are marked.")
-    return Map("".join([head, *drawn, "</svg>"]), _described(course, visits, crossings, began), " ".join(remarks))
+    return Map("".join([head, *drawn, "</svg>"]), _described(course, visits, crossings, scale), " ".join(remarks))
 
 
 def _visits(course: Course, series: Mapping[Expression, Series]) -> tuple[list[_Visit], int]:
@@ -209,9 +209,9 @@ def _dot(at: str, classes: str, title: str) -> str:
     return f'<circle class="{classes}" cx="{x}" cy="{y}" r="4"><title>{escape(title)}</title></circle>'
 
 
-def _crossing(frame: _Frame, before: _Visit, after: _Visit, began: Nanoseconds) -> str:
+def _crossing(frame: _Frame, before: _Visit, after: _Visit, scale: Scale) -> str:
     classes = "crossing inside" if after.zones else "crossing"
-    return _dot(frame.at(after.x, after.y), classes, f"{_change(before, after)} at {clock_text(after.time, began)}")
+    return _dot(frame.at(after.x, after.y), classes, f"{_change(before, after)} at {scale.text(after.time)}")
 
 
 def _change(before: _Visit, after: _Visit) -> str:
@@ -221,20 +221,18 @@ def _change(before: _Visit, after: _Visit) -> str:
     return printable(", ".join(said))
 
 
-def _end_marks(
-    frame: _Frame, visits: Sequence[_Visit], violated_at: Nanoseconds | None, began: Nanoseconds
-) -> Iterator[str]:
+def _end_marks(frame: _Frame, visits: Sequence[_Visit], violated_at: Nanoseconds | None, scale: Scale) -> Iterator[str]:
     """Where the path begins, and where the point was when the property was violated."""
     if visits:
         first = visits[0]
-        yield _dot(frame.at(first.x, first.y), "start", f"starts at {clock_text(first.time, began)}")
+        yield _dot(frame.at(first.x, first.y), "start", f"starts at {scale.text(first.time)}")
     known = [visit for visit in visits if violated_at is not None and visit.time <= violated_at]
     if known and violated_at is not None:
-        yield _dot(frame.at(known[-1].x, known[-1].y), "violated", f"violated at {clock_text(violated_at, began)}")
+        yield _dot(frame.at(known[-1].x, known[-1].y), "violated", f"violated at {scale.text(violated_at)}")
 
 
 def _described(
-    course: Course, visits: Sequence[_Visit], crossings: Sequence[tuple[_Visit, _Visit]], began: Nanoseconds
+    course: Course, visits: Sequence[_Visit], crossings: Sequence[tuple[_Visit, _Visit]], scale: Scale
 ) -> str:
     """The picture in words."""
     names = printable(" and ".join(course.zones))
@@ -246,7 +244,7 @@ def _described(
         return f"The path stays {place}."
     said = [f"The path starts {place}."]
     for before, after in crossings[:LISTED]:
-        said.append(f"At {clock_text(after.time, began)} it {_change(before, after)}.")
+        said.append(f"At {scale.text(after.time)} it {_change(before, after)}.")
     if len(crossings) > LISTED:
         said.append(f"It enters or leaves {len(crossings) - LISTED:,} more times.")
     return " ".join(said)

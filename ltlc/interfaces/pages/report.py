@@ -16,16 +16,18 @@ from ltlc.base.diagnostics import Diagnostic
 from ltlc.base.render.table import example_lines
 from ltlc.compiler import Compiled
 from ltlc.inputs.recordings.trails import Trail
-from ltlc.interfaces.pages.data import Data, clock_text, timeline
+from ltlc.interfaces.pages.data import Data, timeline
 from ltlc.interfaces.pages.machines import machine_picture
 from ltlc.interfaces.pages.maps import Course, courses, map_of
 from ltlc.interfaces.pages.panels import Panel, panels
 from ltlc.interfaces.pages.series import Collector
 from ltlc.monitoring.judging.run import RunReport
+from ltlc.monitoring.judging.violations import violation_text
+from ltlc.monitoring.later import all_violations
 from ltlc.runtime import reports
 from ltlc.runtime.reports import printable
 from ltlc.runtime.session import Session
-from ltlc.runtime.times import seconds_text
+from ltlc.runtime.times import seconds_text, span_text
 from ltlc.runtime.tracking import Track
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.verdicts import Verdict
@@ -103,7 +105,7 @@ class PageReport:
                 link = f"{run.id}-property-{place}"
                 cards.append(self._card(run, place, link))
             decided = track.decided_at
-            at = "" if decided is None else clock_text(decided.time, run.began)
+            at = "" if decided is None else run.session.scale.text(decided.time)
             cells.append({**_said(run.session, track), "link": link, "at": at})
         missing = len(cells) - len(cards)
         left_out = f"{missing} of its {len(cells)} properties are not drawn, to keep the page small." if missing else ""
@@ -136,9 +138,11 @@ class PageReport:
         compiled, drawn = self._compiled[place], self._panels[place]
         is_violated = track.verdict is Verdict.VIOLATED
         self._figures += is_violated
-        marks, series = _first_marks(trail), run.collected.series
-        self._data.timelines.append(timeline(self._data, run.began, run.ended, marks, drawn, series))
-        told = [{"text": reports.moment_text(c.moment), "verdict": c.current.value} for c in trail.changes]
+        marks, series, violations = _first_marks(trail), run.collected.series, all_violations(track) or []
+        self._data.timelines.append(timeline(self._data, run.session, marks, violations, drawn, series))
+        scale = run.session.scale
+        listed = [violation_text(scale, each, run.ended) for each in violations]
+        told = [{"text": reports.moment_text(c.moment, scale), "verdict": c.current.value} for c in trail.changes]
         return {
             **_said(run.session, track),
             "id": link,
@@ -147,12 +151,13 @@ class PageReport:
             "timeline": len(self._data.timelines) - 1,
             "described": _described(track, trail, drawn),
             "notes": [*_notes(drawn, run.collected), *_left_out(trail)],
-            "maps": [map_of(course, series, run.began, track) for course in self._courses[place]],
-            "figure": reports.figure(track) if is_violated else "",
+            "maps": [map_of(course, series, scale, track) for course in self._courses[place]],
+            "figure": reports.figure(run.session, track) if is_violated else "",
             "figure_number": self._figures,
-            "machine": machine_picture(compiled, trail, run.began, link),
+            "machine": machine_picture(compiled, trail, scale, link),
             "machine_described": machine_described(compiled, trail),
             "is_open": is_violated,
+            "violations": listed,
             "examples": self._examples(place),
             "changes": told[:MOST_CHANGES],
             "changes_left_out": len(told[MOST_CHANGES:]),
@@ -198,13 +203,16 @@ def _said(session: Session, track: Track) -> dict[str, str]:
     sentence = reports.sentence(session, track)
     remarks = "; ".join(reports.explanation(session, track))
     decided = track.decided_at
-    at = "" if decided is None else f"{track.verdict.value} at {reports.moment_text(decided)}; "
+    at = "" if decided is None else f"{track.verdict.value} at {reports.moment_text(decided, session.scale)}; "
     label = printable(track.property.label)
     return {"label": label, "verdict": track.verdict.value, "sentence": sentence, "remarks": f"{at}{remarks}"}
 
 
 def _facts(run: _Run) -> str:
-    span = f"From {seconds_text(run.began)} s to {seconds_text(run.ended)} s ({seconds_text(run.ended - run.began)} s)"
+    began, ended, scale = run.began, run.ended, run.session.scale
+    span = f"From {scale.text(began)} to {scale.text(ended)} ({span_text(ended - began)})"
+    if scale.zero is not None:
+        span += f"; +0 s is {seconds_text(scale.zero)} s"
     rate = "" if run.session.plan.rate is None else f", sampled {run.session.plan.rate:g} times a second"
     damage = "; it is damaged, and was judged up to there" if run.report.is_damaged else ""
     return f"{span}, {_count(run.session.steps, 'step')}{rate}{damage}."

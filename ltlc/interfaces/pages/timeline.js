@@ -27,6 +27,7 @@ class Timeline extends Signals {
       return made;
     };
     const lanes = [lane(BAND, this.drawVerdicts, "verdict")];
+    if (this.content.violations.length > 1) lanes.push(lane(BAR, this.drawViolations, "violations"));
     if (this.depths) lanes.push(lane(this.depths * (BAR + 2), this.drawEpisodes, "episodes"));
     if (this.content.deadlines.length) lanes.push(lane(BAR, this.drawDeadlines, "obligation open, and its deadline"));
     for (const panel of this.content.panels) {

@@ -23,7 +23,8 @@ from ltlc.frontend.language.suppression import unsuppressed
 from ltlc.interfaces.pages.panels import Panel, panels
 from ltlc.interfaces.serve.judging import judge
 from ltlc.interfaces.serve.questions import Question, read_question
-from ltlc.runtime.reports import json_value, printable
+from ltlc.runtime.documents import json_value
+from ltlc.runtime.reports import printable
 from ltlc.semantics.encodings import ENCODINGS
 from ltlc.specification.expressions import Current, Signal
 from ltlc.specification.specification import PropertySpecification, Specification

@@ -24,6 +24,8 @@ from ltlc.interfaces.serve.questions import Question
 from ltlc.monitoring.judging.run import Judge, RunReport
 from ltlc.runtime import reports
 from ltlc.runtime.properties import Change
+from ltlc.runtime.session import Session
+from ltlc.runtime.times import Scale
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.verdicts import Verdict
 from ltlc.specification.expressions import Signal
@@ -89,9 +91,9 @@ def _properties(judged: _Judged, count: int) -> list[dict[str, Any]] | None:
             "label": reports.printable(track.property.label),
             "verdict": track.verdict.value,
             "told": reports.sentence(session, track),
-            "figure": reports.figure(track) if track.verdict is Verdict.VIOLATED else "",
+            "figure": reports.figure(session, track) if track.verdict is Verdict.VIOLATED else "",
             "rows": [*_verdicts(trail, judged.times), *unjudged],
-            "changes": [_change(change) for change in trail.changes],
+            "changes": [_change(session, change) for change in trail.changes],
         }
         for track, trail in zip(session.tracks, judged.report.trails, strict=True)
     ]
@@ -104,18 +106,18 @@ def _verdicts(trail: Trail, times: Sequence[Nanoseconds]) -> list[str]:
     return [verdicts[bisect_right(changed, time)].value for time in times]
 
 
-def _change(change: Change) -> dict[str, Any]:
-    text = reports.moment_text(change.moment)
+def _change(session: Session, change: Change) -> dict[str, Any]:
+    text = reports.moment_text(change.moment, session.scale)
     return {"time_ns": change.moment.time, "verdict": change.current.value, "text": text}
 
 
 def _picture(prepared: Prepared, report: RunReport, number: int) -> dict[str, Any]:
     """The monitor of a property with the way that the run took; without a way if nothing could be judged."""
     compiled, trail = prepared.compiled[number], Trail()
-    began = 0
+    scale = Scale()
     if report.session is not None and report.session.began is not None:
-        trail, began = report.trails[number], report.session.began
-    drawn = machine_picture(compiled, trail, began, "monitor")
+        trail, scale = report.trails[number], report.session.scale
+    drawn = machine_picture(compiled, trail, scale, "monitor")
     return {
         "svg": drawn.svg,
         "letters": list(drawn.letters),
@@ -130,4 +132,4 @@ def _maps(judged: _Judged, property_: PropertySpecification, number: int) -> lis
     if session is None or session.began is None:
         return []
     track, series = session.tracks[number], judged.collected.series
-    return [asdict(map_of(course, series, session.began, track)) for course in courses(property_)]
+    return [asdict(map_of(course, series, session.scale, track)) for course in courses(property_)]

@@ -10,7 +10,7 @@ from ltlc.monitoring.campaigns.outcomes import Outcome
 from ltlc.monitoring.campaigns.places import Found
 from ltlc.monitoring.campaigns.tally import Result, Tally, brief, counted
 from ltlc.monitoring.judging.run import unread_case, warnings
-from ltlc.runtime import reports
+from ltlc.runtime import junit, reports
 
 
 class Form(Protocol):
@@ -93,9 +93,9 @@ class JUnit:
     def add(self, outcome: Outcome) -> str:
         """Nothing yet."""
         cases = [
-            reports.Case(
+            junit.Case(
                 name=each.label,
-                element=reports.case_element(each.verdict, has_lost="lost_messages" in each.report),
+                element=junit.case_element(each.verdict, has_lost="lost_messages" in each.report),
                 kind=each.verdict.value,
                 message=each.sentence,
                 details=each.figure or f"{each.sentence}\n",
@@ -105,15 +105,15 @@ class JUnit:
         if outcome.error is not None:
             cases.append(unread_case(str(outcome.error["code"]), str(outcome.error["message"])))
         remarks = [*outcome.remarks, *warnings(outcome.report["diagnostics"])]
-        self._suites.append(reports.suite_text(outcome.place.name, cases, remarks))
+        self._suites.append(junit.suite_text(outcome.place.name, cases, remarks))
         return ""
 
     def end(self, tally: Tally, found: Found) -> str:
         """The report."""
         for problem in found.problems:
             case = unread_case(problem.code, problem.message)
-            self._suites.append(reports.suite_text(problem.source.name, [case], ()))
-        return f"{reports.XML_HEAD}<testsuites>\n{''.join(self._suites)}</testsuites>\n"
+            self._suites.append(junit.suite_text(problem.source.name, [case], ()))
+        return f"{junit.XML_HEAD}<testsuites>\n{''.join(self._suites)}</testsuites>\n"
 
 
 FORMS: dict[str, type[Form]] = {"text": Text, "json": Json, "junit": JUnit}

@@ -89,7 +89,7 @@ def of_report(place: Location, found: RunReport, seconds: float) -> Outcome:
         PropertyOutcome(
             report,
             reports.sentence(found.session, track),
-            reports.figure(track) if track.verdict is Verdict.VIOLATED else "",
+            reports.figure(found.session, track) if track.verdict is Verdict.VIOLATED else "",
         )
         for report, track in zip(document["properties"] or (), tracks, strict=True)
         if found.session is not None

@@ -11,7 +11,7 @@ from ltlc.monitoring.campaigns.forms import remarks
 from ltlc.monitoring.campaigns.places import Found
 from ltlc.monitoring.campaigns.tally import Failing, PropertyTally, Result, Tally
 from ltlc.runtime.reports import printable, value_text
-from ltlc.runtime.times import seconds_text
+from ltlc.runtime.times import SECOND, Scale, seconds_text
 
 SIDE_BY_SIDE = 4
 """How many violations of a property are shown side by side."""
@@ -77,7 +77,9 @@ def _moment(moment: dict[str, Any] | None) -> str:
     if moment is None:
         return ""
     step = f"after step {moment['step']}" if moment["by_time"] else f"step {moment['step']}"
-    return f"{seconds_text(moment['time_ns'])} s ({step})"
+    offset = moment.get("offset")  # a table of results may be older
+    time = f"{seconds_text(moment['time_ns'])} s" if offset is None else Scale(0).text(round(offset * SECOND))
+    return f"{time} ({step})"
 
 
 def _value(values: dict[str, Any], name: str) -> str:

@@ -17,7 +17,8 @@ from ltlc.monitoring.columns.series import Columns, Rows, Steps, UnsupportedErro
 from ltlc.monitoring.columns.slices import BySlices, refusal
 from ltlc.monitoring.columns.ticks import MOST, Seen, block_of, times_of
 from ltlc.monitoring.columns.tracks import Forward, Stretch, count_invalid, has_ages, stretch, take_together
-from ltlc.monitoring.columns.walk import hear, walk
+from ltlc.monitoring.columns.walk import hear, walk, walk_on
+from ltlc.monitoring.later import is_followed, later_of
 from ltlc.runtime.properties import MonitoredProperty
 from ltlc.runtime.rows import ByRows
 from ltlc.runtime.sampling import Derived, Reading, Window
@@ -240,7 +241,7 @@ class ByBlocks:
         compare: dict[int, list[Compared]] = {}
         by_steps = {id(steps): steps for _, steps in found}
         for way, steps in found:
-            if way.track.decided_at is None:
+            if is_followed(way.track):
                 compare.setdefault(id(steps), []).extend(way.of.compare)
         for number, wanted in compare.items():
             prepare(wanted, by_steps[number])
@@ -252,12 +253,12 @@ class ByBlocks:
         What comes back are the ids of those properties that did; of others, the reason is kept.
         """
         taken = [(way, part) for way, steps in found if (part := self._stretch(way, steps, rows)) is not None]
-        start = perf_counter_ns()
+        start, bases = perf_counter_ns(), [way.track.steps for way, _ in taken]
         untimed = ((way.forward, part) for way, part in taken if not way.track.property.timed)
         together = [(forward, part) for forward, part in untimed if forward is not None]
         take_together(together)
         each = (perf_counter_ns() - start) // max(1, len(together))
-        for way, part in taken:
+        for (way, part), base in zip(taken, bases, strict=True):
             start = perf_counter_ns()
             if way.forward is None:
                 walk(way.track, part)
@@ -265,6 +266,8 @@ class ByBlocks:
                 walk_and_leap(way.forward, part)
             else:
                 way.nanoseconds += each
+            if (later := later_of(way.track)) is not None:
+                walk_on(later, part, later.steps - base)
             way.track.hold(int(rows.times[-1]))
             way.track.is_settled = way.track.is_settled and not len(part.steps)
             way.nanoseconds += perf_counter_ns() - start

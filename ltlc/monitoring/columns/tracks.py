@@ -19,6 +19,8 @@ from ltlc.monitoring.columns.prepared import Prepared
 from ltlc.monitoring.columns.series import Steps, UnsupportedError
 from ltlc.monitoring.columns.tables import Tables
 from ltlc.monitoring.columns.values import not_numbers, predicate, value
+from ltlc.monitoring.later import is_followed
+from ltlc.runtime.courses import Course
 from ltlc.runtime.episodes import Episodes
 from ltlc.runtime.properties import Moment, Opening, Scope
 from ltlc.runtime.reasons import reason_of_none
@@ -64,10 +66,11 @@ def stretch(track: Track, of: Prepared, steps: Steps) -> Stretch:
     """The valid ones of `steps`; where `track` is decided, without its atoms. Raises UnsupportedError."""
     if not len(steps):
         return Stretch(steps, None, ())
-    ages = track.decided_at is None and has_ages(track)
+    is_judged = is_followed(track)
+    ages = is_judged and has_ages(track)
     if of.openings:
         return Stretch(steps, None, (), KeptLetters(track, of, steps))
-    found = () if track.decided_at is not None else tuple([bits_of(atom, steps) for atom in of.atoms])
+    found = tuple([bits_of(atom, steps) for atom in of.atoms]) if is_judged else ()
     counted = of.counts if track.decided_at is None else ()
     holds = [np.broadcast_to(np.asarray(value(each.of.condition, steps), np.bool_), len(steps)) for each in counted]
     mask, numbers = not_numbers(of.guards, steps), None
@@ -84,12 +87,12 @@ def stretch(track: Track, of: Prepared, steps: Steps) -> Stretch:
     return Stretch(steps, numbers, (*found, *(pack(each.is_reached) for each in counts)), None, counts)
 
 
-def has_ages(track: Track) -> bool:
+def has_ages(track: Course) -> bool:
     """Whether messages renew ages that the property asks for."""
     return bool(track.property.ages) or any(event.ages for event in track.property.events)
 
 
-def values_at(track: Track, steps: Steps, step: int) -> list[object]:
+def values_at(track: Course, steps: Steps, step: int) -> list[object]:
     """The values of the inputs of a property at one of `steps`."""
     return [steps.value(wanted, step) for wanted in track.property.inputs]
 

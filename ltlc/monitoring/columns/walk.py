@@ -18,6 +18,8 @@ from ltlc.monitoring.columns.bits import unpack
 from ltlc.monitoring.columns.kept import KeptLetters
 from ltlc.monitoring.columns.series import Steps
 from ltlc.monitoring.columns.tracks import Stretch, has_ages, values_at
+from ltlc.monitoring.later import Later
+from ltlc.runtime.courses import Course
 from ltlc.runtime.sampling import New
 from ltlc.runtime.times import NEVER
 from ltlc.runtime.tracking import Track
@@ -41,7 +43,7 @@ class Walk:
     Where letters depend on what was taken at openings, that is invalid ones, too.
     """
 
-    def __init__(self, track: Track, found: Stretch, changes: Changes | KeptLetters) -> None:
+    def __init__(self, track: Course, found: Stretch, changes: Changes | KeptLetters) -> None:
         self._track = track
         self._found = found
         self._changes = changes
@@ -93,6 +95,11 @@ def walk(track: Track, found: Stretch) -> None:
     steps.finish()
 
 
+def walk_on(later: Later, found: Stretch, first: int) -> None:
+    """Take the steps of `found` from the `first` on, after the one that violated the property."""
+    Walk(later, found, Changes(found)).take(first, len(found))
+
+
 class Changes:
     """Where the letter is not that of the step before, or something occurs that is counted."""
 
@@ -117,7 +124,7 @@ class Changes:
         return max(0, int(before - after))
 
 
-def _view(track: Track, time: int) -> list[Any]:
+def _view(track: Course, time: int) -> list[Any]:
     """What decides what a step does with a letter: states, and which clocks are late at `time`."""
     return [
         (one.state, one.verdict, [due < time for name, due in vars(one).items() if name.startswith("due")])
@@ -125,12 +132,12 @@ def _view(track: Track, time: int) -> list[Any]:
     ]
 
 
-def _machines(track: Track) -> Iterator[Any]:
+def _machines(track: Course) -> Iterator[Any]:
     """The monitor, and what watches for events that the past decides."""
     yield track.monitor
     yield from track.watchers.machines
 
 
-def _due(track: Track) -> int:
+def _due(track: Course) -> int:
     """When the next clock step comes, unless a step comes first."""
     return min(track.due, track.watchers.due())

@@ -79,7 +79,7 @@ def _verdicts(session: Session, track: Track, trail: Trail, name: str) -> Iterat
     if not trail.changes or trail.changes[0].moment.time > began:
         yield from _verdict(began, track, name, Verdict.NOT_STARTED, [])
     for change in trail.changes:
-        said = [f"since {moment_text(change.moment)}"]
+        said = [f"since {moment_text(change.moment, session.scale)}"]
         yield from _verdict(change.moment.time, track, name, change.current, said)
     yield from _verdict(end, track, name, track.verdict, explanation(session, track))
 

@@ -17,15 +17,20 @@ from ltlc.compiler import Compiled
 from ltlc.inputs.recordings import Block, Recording, RecordingError, open_recording
 from ltlc.inputs.recordings.checks import checks_of
 from ltlc.inputs.recordings.lacks import remarks, signals_of
-from ltlc.inputs.recordings.reading import DEFAULT, ReadOptions
-from ltlc.inputs.recordings.rows import failure, outside
+from ltlc.inputs.recordings.reading import DEFAULT, Limit, ReadOptions
+from ltlc.inputs.recordings.rows import failure
 from ltlc.inputs.recordings.trails import Trail, Trailing
 from ltlc.monitoring.columns.prepared import Prepared, prepare_all
 from ltlc.monitoring.columns.session import ByBlocks
-from ltlc.runtime import reports, sampling
+from ltlc.monitoring.judging.part import Part
+from ltlc.monitoring.judging.violations import violations_report, violations_text
+from ltlc.monitoring.later import JudgedTrack, can_recur
+from ltlc.runtime import documents, junit, reports, sampling
+from ltlc.runtime.properties import MonitoredProperty
 from ltlc.runtime.rows import ByRows
 from ltlc.runtime.session import Plan, Session
 from ltlc.runtime.times import seconds
+from ltlc.runtime.tracking import Observer, Track
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.verdicts import Verdict
 from ltlc.specification.expressions import Field, Signal
@@ -65,12 +70,20 @@ class RunReport:
         left_out = any(slices.left_out for slices in self.session.sliced)
         return reports.exit_code([track.verdict for track in self.session.tracks], left_out)
 
-    def text(self) -> str:
-        """The errors, each with its failing state, and a line for each property."""
-        if self.session is None:
+    def text(self, with_all: bool = False) -> str:
+        """The errors, each with its failing state, and a line for each property.
+
+        If it is `with_all` violations, those after the first one follow its failing state.
+        """
+        session = self.session
+        if session is None:
             return ""
-        figures = [reports.figure(t) for t in self.session.tracks if t.verdict is Verdict.VIOLATED]
-        return "".join(f"{figure}\n" for figure in figures) + reports.summary(self.session)
+        figures = []
+        for track in session.tracks:
+            if track.verdict is Verdict.VIOLATED:
+                more = violations_text(session, track) if with_all and track.slices is None else ""
+                figures.append(f"{reports.figure(session, track)}{more}\n")
+        return "".join([*figures, reports.summary(session)])
 
     def json(self) -> str:
         """The JSON document of `ltlc run`, as text."""
@@ -80,8 +93,9 @@ class RunReport:
         """The JSON document of `ltlc run`; one with `properties` null if the recording cannot be used."""
         document: dict[str, Any] = {"recording": self.recording, "steps": 0, "properties": None}
         if self.session is not None:
-            document = reports.document(self.recording, self.session)
-            for each in document["properties"]:
+            document = documents.document(self.recording, self.session)
+            for each, track in zip(document["properties"], self.session.tracks, strict=True):
+                each.update(violations_report(self.session, track))
                 if requirement := self.requirements.get(each["label"]):
                     each["requirement"] = requirement.document()
         document["is_damaged"] = self.is_damaged
@@ -100,8 +114,8 @@ class RunReport:
         told = self.diagnostics[-1:] if self.session is None or self.is_damaged else ()
         unread = [unread_case(each.code, each.message) for each in told]
         if self.session is None:
-            return f"{reports.XML_HEAD}{reports.suite_text(self.recording, unread, ())}"
-        return reports.junit(self.recording, self.session, unread, warnings(self._diagnostics()))
+            return f"{junit.XML_HEAD}{junit.suite_text(self.recording, unread, ())}"
+        return junit.junit(self.recording, self.session, unread, warnings(self._diagnostics()))
 
 
 def warnings(diagnostics: Sequence[Mapping[str, str]]) -> list[str]:
@@ -109,9 +123,9 @@ def warnings(diagnostics: Sequence[Mapping[str, str]]) -> list[str]:
     return [reports.printable(d["message"]) for d in diagnostics if d["severity"] == Severity.WARNING.value]
 
 
-def unread_case(code: str, message: str) -> reports.Case:
+def unread_case(code: str, message: str) -> junit.Case:
     """The test case of a recording that was not judged to the end."""
-    return reports.Case("recording", "error", code, message, f"{reports.printable(message)}\n")
+    return junit.Case("recording", "error", code, message, f"{reports.printable(message)}\n")
 
 
 class Stopwatch:
@@ -138,8 +152,8 @@ def run(
     specification: Specification,
     path: Path,
     keep_verdicts: bool = False,
-    since: Nanoseconds | None = None,
-    until: Nanoseconds | None = None,
+    since: Limit = None,
+    until: Limit = None,
 ) -> RunReport:
     """Judge the recording at `path`, as `Judge` does."""
     return Judge(compiled, specification, ReadOptions(since=since, until=until), keep_verdicts).judge(path)
@@ -155,7 +169,7 @@ class Judge:
 
     With `keep_verdicts` a report has the verdict after each step, with `keep_trails` what each property went through.
     Rows are taken from the time `reading.since` on, up to and including `reading.until`. `remarks` are on the monitors,
-    and stand in each report before those on the recording.
+    and stand in each report before those on the recording. It `finds_all` violations of a property, or the first one.
     """
 
     compiled: Sequence[Compiled]
@@ -165,6 +179,7 @@ class Judge:
     keep_trails: bool = False
     open: Open = open_recording
     remarks: tuple[Diagnostic, ...] = ()
+    finds_all: bool = True
 
     def judge(self, path: Path, watchers: Sequence[Watcher] = ()) -> RunReport:
         """What the recording at `path` shows. `watchers` are told what was judged, block by block."""
@@ -174,15 +189,18 @@ class Judge:
             return RunReport(str(path), None, (error.diagnostic,))
         found = self.remarks_on(path, recording)
         plan, observe = self.plan(recording.columns), Trailing if self.keep_trails else None
-        session = Session(plan, self.keep_verdicts, observe)
+        session = Session(plan, self.keep_verdicts, observe, self._track)
+        absent = (name for name in readings(plan) if name not in recording.columns)
+        session.absences = {name: recording.absence(name) for name in absent}
         blocks, watch, start = ByBlocks(session, self.prepared), Stopwatch(), perf_counter_ns()
-        damage = None
+        damage, part = None, Part(path, recording, self.reading)
         try:
-            self._run(blocks, path, watch.over(self._blocks(path, recording)), recording.columns, watchers)
+            self._run(blocks, path, part, watch, recording.columns, watchers)
         except RecordingError as error:
             damage = error.diagnostic
         times = (watch.nanoseconds, perf_counter_ns() - start - watch.nanoseconds)
-        found += [*recording.remarks(), *self._left_out(session)]
+        found += [*part.remarks(), *recording.remarks(), *self._left_out(session)]
+        session.zero, session.times = part.zero, self.reading.times
         trails = tuple(t.observer.trail for t in session.tracks if isinstance(t.observer, Trailing))
         if damage is not None:
             found.append(damage)
@@ -218,6 +236,14 @@ class Judge:
         """What judging by columns needs of the properties."""
         return prepare_all(self.compiled, self.specification.source)
 
+    def _track(self, property_: MonitoredProperty, keep: bool, observer: Observer | None) -> Track:
+        return JudgedTrack(property_, keep, observer, property_.label in self._recurring)
+
+    @cached_property
+    def _recurring(self) -> frozenset[str]:
+        """The labels of the properties all violations of which are looked for."""
+        return frozenset(each.specification.label for each in self.compiled if self.finds_all and can_recur(each))
+
     @cached_property
     def _plans(self) -> dict[frozenset[str], Plan]:
         """Those made so far, by the signals that come in themselves."""
@@ -249,42 +275,32 @@ class Judge:
         self,
         by_blocks: ByBlocks,
         path: Path,
-        blocks: Iterator[Block],
+        part: Part,
+        watch: Stopwatch,
         columns: Collection[str],
         watchers: Sequence[Watcher],
     ) -> None:
-        """Take the rows in `blocks`, which have samples of `columns`. Raises RecordingError."""
+        """Take the rows in `part`, which have samples of `columns`; `watch` how long reading takes.
+
+        Raises RecordingError.
+        """
         session = by_blocks.session
         checks = checks_of(self.signals[name] for name in readings(session.plan) if name in columns)
-        for block in blocks:
+        for block in watch.over(part.blocks()):
             checks.check(block, path)
             if self.keep_verdicts and len(block.times):
                 first = block.times[0] if session.time is None else session.time
                 _check_steps(session, int(block.times[-1] - first), path)
             by_blocks.take(block)
-            for watch in watchers:
-                watch(block)
+            for watcher in watchers:
+                watcher(block)
             if session.is_over:
-                return
-        end = session.time if self.reading.until is None else self.reading.until
+                break
+        end = session.time if part.until is None else part.until
         if end is not None:
             ByRows(by_blocks.session).advance(end)
-
-    def _blocks(self, path: Path, recording: Recording) -> Iterator[Block]:
-        """The rows that are to be judged. Raises RecordingError, also if all others are before these, or after."""
-        before = after = False
-        judged = 0
-        for block in recording.blocks():
-            of = block.between(self.reading.since, self.reading.until)
-            judged += len(of.times)
-            yield of
-            if len(of.times) < len(block.times):
-                before |= self.reading.since is not None and bool(block.times[0] < self.reading.since)
-                after |= self.reading.until is not None and bool(block.times[-1] > self.reading.until)
-            if after:
-                break
-        if not judged and before != after:
-            raise outside(path, is_before=before)
+            for track in session.tracks:
+                track.hold(min(end, session.end))
 
 
 MOST_VERDICTS = 10_000_000

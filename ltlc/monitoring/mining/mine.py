@@ -196,6 +196,6 @@ def _conclude(oracle: Oracle, recording: Kept, searches: Sequence[tuple[Finding,
             finding.passes = search.found is not None
             finding.number = search.high if finding.passes else finding.number
     if deciding:
-        _, answers = oracle.answers(recording, [trial for _, trial in deciding])
+        _, answers = oracle.answers(recording, [trial for _, trial in deciding], finds_all=True)
         for finding, trial in deciding:
             finding.failure = Failure(recording.path, trial, answers[trial])

@@ -86,14 +86,19 @@ class Oracle:
         self._budget = budget
         self._monitors: dict[Hashable, Monitor | Exceeded] = {}
 
-    def answers(self, recording: Kept, trials: Sequence[Trial]) -> tuple[RunReport, dict[Trial, Answer]]:
+    def answers(
+        self, recording: Kept, trials: Sequence[Trial], finds_all: bool = False
+    ) -> tuple[RunReport, dict[Trial, Answer]]:
         """What `recording` says to each of `trials`; nothing if none of it can be read.
+
+        If it `finds_all` violations, those after the first one are known, too.
 
         Raises TooHardError and SpotMissing.
         """
         compiled, specification = self._compiled(trials)
         self.looks += 1
-        report = Judge(compiled, specification, self._reading, open=recording.open).judge(recording.path)
+        judge = Judge(compiled, specification, self._reading, open=recording.open, finds_all=finds_all)
+        report = judge.judge(recording.path)
         if report.session is None:
             return report, {}
         pairs = list(zip(specification.properties, report.session.tracks, strict=True))
@@ -145,6 +150,12 @@ class Kept:
         """See `Recording`."""
         assert self._recording is not None
         return self._recording.definitions
+
+    @property
+    def beginning(self) -> Nanoseconds | None:
+        """See `Recording`."""
+        assert self._recording is not None
+        return self._recording.beginning
 
     def absence(self, name: str) -> str:
         """See `Recording`."""

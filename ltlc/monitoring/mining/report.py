@@ -9,9 +9,10 @@ from textwrap import indent
 from typing import Any
 
 from ltlc.frontend.language.parameters import Role
+from ltlc.monitoring.judging.violations import spread
 from ltlc.monitoring.mining.mine import Failure, Finding, Mined, Result
 from ltlc.monitoring.mining.template import Trial
-from ltlc.runtime import reports
+from ltlc.runtime import documents, reports
 from ltlc.runtime.reports import printable
 from ltlc.runtime.times import seconds
 
@@ -54,7 +55,7 @@ def _failed(failure: Failure) -> str:
     """That the property fails with a value, and when."""
     track, session = failure.answer.failing, failure.answer.session
     verdict = track.verdict.value.replace("_", " ")
-    when = f" at {reports.moment_text(track.decided_at)}" if track.decided_at else ""
+    when = f" at {reports.moment_text(track.decided_at, session.scale)}" if track.decided_at else ""
     owed = "" if track.decided_at else f"; {reports.explanation(session, track)[0]}"
     return f"with {failure.trial.text} it is {verdict}{when}{owed}"
 
@@ -62,7 +63,9 @@ def _failed(failure: Failure) -> str:
 def _shown(failure: Failure) -> Iterator[str]:
     """The state in which a property fails, as `ltlc run` shows it."""
     if failure.answer.failing.decided_at is not None:
-        yield indent(reports.figure(failure.answer.failing), "    ").rstrip("\n")
+        yield indent(reports.figure(failure.answer.session, failure.answer.failing), "    ").rstrip("\n")
+        if found := spread(failure.answer.session, failure.answer.failing):
+            yield f"    {found.text()}"
 
 
 def _others(mined: Mined, finding: Finding) -> Iterator[str]:
@@ -129,11 +132,13 @@ def _property(mined: Mined, finding: Finding) -> dict[str, Any]:
 
 def _failure(failure: Failure) -> dict[str, Any]:
     track, session = failure.answer.failing, failure.answer.session
+    violations = spread(session, track)
     return {
         "recording": str(failure.recording),
         **_value(failure.trial),
-        "property": reports.property_report(track),
+        "property": documents.property_report(session, track),
         "remarks": reports.explanation(session, track),
+        "violations": None if violations is None else violations.document(),
     }
 
 

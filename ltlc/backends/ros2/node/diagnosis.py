@@ -70,12 +70,13 @@ class Diagnosis:
         if track.slices is not None:
             verdict, ids = f"{verdict}{track.slices.since()}", track.slices.listed()
         name = self._node.get_fully_qualified_name()
+        words = [verdict, *explanation(session, track), *remarks]
         return DiagnosticStatus(
             level=level(
                 track, [*remarks, *lost(session, track), *malformed(session, track)]
             ),
             name=f"{name.removeprefix('/')}: {printable(track.property.label)}",
-            message="; ".join([verdict, *explanation(session, track), *remarks]),
+            message="; ".join(dict.fromkeys(words)),
             hardware_id=name,
             values=[
                 KeyValue(key="verdict", value=track.verdict.value),

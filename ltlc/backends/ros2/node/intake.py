@@ -69,6 +69,11 @@ class Silence:
         return time.monotonic() - self._since
 
     @property
+    def text(self) -> str:
+        """For how long nothing has come."""
+        return f" for {self.seconds:.0f} s" if self._count else " yet"
+
+    @property
     def is_unusual(self) -> bool:
         """Whether that is far longer than ever before; what came once may rest."""
         usual = max(self.PATIENCE, 10 * self._longest)
@@ -114,6 +119,7 @@ class Listener:
         self._latest = 0
         self.silence = Silence()
         self._is_published = True
+        self._has_offers = False
         self._has_warned = False
         self._reliability = ReliabilityPolicy.RELIABLE
         self._durability = DurabilityPolicy.VOLATILE
@@ -171,15 +177,23 @@ class Listener:
     @property
     def remarks(self) -> list[str]:
         """What is wrong, or may be, with what is heard on this topic."""
-        remarks = [f"{self.full_name} is also published as {t}" for t in self.foreign]
+        also = [f"{self.full_name} is also published as {t}" for t in self.foreign]
+        remarks = [self.misfit] if self.misfit else also
         if self._reliability is ReliabilityPolicy.BEST_EFFORT:
             remarks.append(f"{self.full_name} is published without delivery guarantee")
         if not self._is_published:
             remarks.append(f"{self.full_name} no longer has a publisher")
         if self.silence.is_unusual:
-            seconds = self.silence.seconds
-            remarks.append(f"no message on {self.full_name} for {seconds:.0f} s")
+            remarks.append(f"no message on {self.full_name}{self.silence.text}")
         return remarks
+
+    @property
+    def misfit(self) -> str:
+        """That all that is published on the topic is of other types; else empty."""
+        if not self.foreign or self._has_offers:
+            return ""
+        types = " and ".join(self.foreign)
+        return f"{self.full_name} is published as {types}, not as {self.topic.message}"
 
     def fit(self, heard: int) -> None:
         """Adapt to the publishers that there are now; `heard` messages came so far."""
@@ -188,6 +202,7 @@ class Listener:
         types = {publisher.topic_type for publisher in publishers}
         self.foreign = sorted(types - {self.topic.message})
         offers = [p.qos_profile for p in publishers if p.topic_type not in self.foreign]
+        self._has_offers = bool(offers)
         if not offers:
             return
         reliability, durability = self._reliability, self._durability

@@ -14,8 +14,10 @@ from std_msgs.msg import String
 from ltlc.backends.ros2.node.files import Lines, test_suites, write_text
 from ltlc.backends.ros2.node.options import Options
 from ltlc.backends.ros2.node.recorder import Recorder
+from ltlc.runtime.documents import document, json_line
+from ltlc.runtime.junit import junit
 from ltlc.runtime.properties import Change
-from ltlc.runtime.reports import document, json_line, junit, summary
+from ltlc.runtime.reports import summary
 from ltlc.runtime.sampling import Value
 from ltlc.runtime.session import Session
 

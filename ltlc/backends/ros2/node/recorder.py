@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TextIO
 
 from ltlc.backends.ros2.node.files import UnusableError
-from ltlc.runtime.reports import json_value
+from ltlc.runtime.documents import json_value
 from ltlc.runtime.sampling import Value
 from ltlc.runtime.times import seconds_text
 

@@ -18,12 +18,12 @@ from ltlc.backends.ros2.node.options import Options
 from ltlc.backends.ros2.node.outlets import Outlets
 from ltlc.backends.ros2.node.topics import Topic
 from ltlc.runtime.properties import Change
-from ltlc.runtime.reports import exit_code, figure, sentence, summary
+from ltlc.runtime.reports import counted, exit_code, figure, sentence, summary
 from ltlc.runtime.rows import ByRows
 from ltlc.runtime.sampling import Value
 from ltlc.runtime.session import Plan, Session
 from ltlc.runtime.silence import news
-from ltlc.runtime.times import SECOND, duration, seconds_text
+from ltlc.runtime.times import SECOND, Times, duration, seconds_text
 from ltlc.runtime.tracking import Track
 from ltlc.semantics.verdicts import Verdict
 
@@ -51,6 +51,8 @@ class Watch:
     """No diagnosis follows another for so many times as long as that one took."""
     DISCOVERY = 3.0
     PATIENCE = 5.0
+    SILENCE = 30.0
+    """How often, in s, topics are named that have been silent for as long."""
     KEPT = 10_000
     THOROUGH = 10
     BACKLOG = 1_000_000
@@ -91,9 +93,14 @@ class Watch:
         self._discovered = self._began + self.DISCOVERY
         self._next_diagnosis = self._next_housekeeping = self._rested = self._began
         self._has_warned = False
+        self._next_silence = self._began + self.SILENCE
         self._new_session()
         self._news = set[str]().union(
             *(news(self._session, track) for track in self._session.tracks)
+        )
+        self._node.get_logger().info(
+            f"watching {counted(len(plan.properties), 'property', 'properties')} "
+            f"on {counted(len(topics), 'topic')}"
         )
 
     def _new_session(self) -> None:
@@ -101,6 +108,7 @@ class Watch:
         self._has_begun = False
         self._due: int | None = None
         self._session = Session(self._plan)
+        self._session.times = Times.BOTH
         self._tracks = {id(track.property): track for track in self._session.tracks}
         self._rows = ByRows(self._session)
         for _, _, topic, _ in self._waiting:
@@ -223,7 +231,7 @@ class Watch:
             if change.current is Verdict.VIOLATED:
                 self._locks.show(self._session)
                 if track.slices is None:
-                    self._node.get_logger().error(figure(track).rstrip())
+                    self._node.get_logger().error(figure(self._session, track).rstrip())
                 self.has_ended |= self._ends_on_violation
             self._next_diagnosis = 0.0
 
@@ -250,6 +258,7 @@ class Watch:
             listener.silence.look(heard)
             if is_due or not heard:
                 listener.fit(heard)
+                self._note_misfit(listener)
         if is_due:
             self._next_diagnosis = start + self.DIAGNOSIS
             self._outlets.save()
@@ -260,6 +269,28 @@ class Watch:
         if not self._has_warned and time.monotonic() > self._began + self.PATIENCE:
             self._has_warned = True
             self._warn_of_silence()
+        if time.monotonic() > self._next_silence:
+            self._next_silence = time.monotonic() + self.SILENCE
+            self._say_what_is_silent()
+
+    def _note_misfit(self, listener: Listener) -> None:
+        """Let reports say if a topic is silent because its messages are others."""
+        absences, name = self._session.absences, listener.topic.name
+        absences.pop(name, None)
+        if listener.misfit:
+            absences[name] = listener.misfit
+
+    def _say_what_is_silent(self) -> None:
+        """Log in one line the topics on which nothing came, or not for `SILENCE` s."""
+        silent = []
+        for listener in self._listeners:
+            silence = listener.silence
+            is_long = silence.is_unusual and silence.seconds >= self.SILENCE
+            if is_long or silence.seconds < 0:
+                text = f"no message on {listener.full_name}{silence.text}"
+                silent.append(listener.misfit or text)
+        if silent:
+            self._node.get_logger().warning("; ".join(silent))
 
     def _warn_of_silence(self) -> None:
         """Say once, early enough to be mended, what has not started."""

@@ -88,6 +88,12 @@ class BagRecording:
         """Who defines the messages on each topic that is read."""
         return {topic: ", ".join(reader.defined.origins) for topic, reader in self._plan.readers.items()}
 
+    @property
+    def beginning(self) -> Nanoseconds | None:
+        """When its first message was recorded, on any topic; not known if messages have the times of their headers."""
+        firsts = [span[0] for span in self._spans if span is not None]
+        return min(firsts, default=None) if self._reading.stamp is Stamp.LOG else None
+
     def remarks(self) -> list[Diagnostic]:
         """What was irregular about the files and definitions, and, once they have been read, about times."""
         found = [*self._bag.remarks, *self._about_definitions()]
@@ -159,7 +165,7 @@ class BagRecording:
     @property
     def _limits(self) -> tuple[Nanoseconds, Nanoseconds] | None:
         """The times of recording of what has to be read; None: all."""
-        since, until = self._reading.since, self._reading.until
+        since, until = self._reading.limits(self.beginning)
         if self._reading.stamp is Stamp.HEADER or (since is None and until is None):
             return None
         return -LATEST if since is None else since, LATEST if until is None else until

@@ -1,0 +1,146 @@
+"""A violation explains itself: by how much, which element, how old an age was, and what a constant is called."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from stepping import from_text
+
+from ltlc.inputs.recordings.reading import Offset, ReadOptions, limit
+from ltlc.monitoring.judging.run import Judge, RunReport
+from ltlc.runtime.rows import ByRows
+from ltlc.runtime.session import Session
+
+HEAD = """
+decl a /a sensor_msgs/JointState.effort
+decl level /d diagnostic_msgs/DiagnosticStatus.level
+decl power /b sensor_msgs/BatteryState.power_supply_status
+decl v /v std_msgs/Float64.data
+"""
+
+
+def judged(folder: Path, text: str, *rows: dict[str, Any], **options: Any) -> RunReport:
+    path = folder / "run.jsonl"
+    path.write_text("".join(f"{json.dumps(row)}\n" for row in rows))
+    return Judge(*from_text(HEAD + text), ReadOptions(**options)).judge(path)
+
+
+def because(report: RunReport) -> list[str]:
+    """The lines below `Because:`."""
+    lines = report.text().splitlines()
+    below = lines[lines.index("Because:") + 1 :]
+    return [line.strip() for line in below[: next(n for n, line in enumerate(below) if not line.startswith("  "))]]
+
+
+@pytest.mark.parametrize(
+    ("text", "left", "line"),
+    [
+        ("never v > 0.5", 0.53, "v > 0.5: true, 0.53 > 0.5 by 0.03"),
+        ("always v > 0.5", 0.5, "v > 0.5: false, 0.5 <= 0.5"),
+        ("always v <= 0.5", 0.75, "v <= 0.5: false, 0.75 > 0.5 by 0.25"),
+        ("always v == 2", 1.5, "v == 2: false, 1.5 differs from 2.0 by 0.5"),
+        ("never v == 2", 2, "v == 2: true"),
+        ("never v > 0.5", float("inf"), "v > 0.5: true, inf > 0.5"),
+    ],
+)
+def test_a_comparison_says_by_how_much_it_holds_or_fails(tmp_path: Path, text: str, left: float, line: str) -> None:
+    assert because(judged(tmp_path, text, {"time": 0, "v": left if left < 9e9 else "inf"})) == [line]
+
+
+ELEMENTS = st.lists(st.sampled_from([-2.0, -1.0, 0.0, 1.0, 2.0, 3.0, float("nan")]), min_size=1, max_size=9)
+
+
+def decides(text: str, array: list[float]) -> int | None:
+    """The first element without which, and what comes after it, the condition would be otherwise."""
+
+    def holds(part: list[float]) -> bool:
+        return {
+            "any(a > 1)": any(x > 1 for x in part),
+            "all(a < 2)": not any(x >= 2 for x in part),
+            "count(a > 0) < 2": sum(x > 0 for x in part) < 2,
+            "count(a[1:] < 1) >= 2": sum(x < 1 for x in part[1:]) >= 2,
+        }[text]
+
+    final = holds(array)
+    found = [n for n in range(len(array)) if holds(array[: n + 1]) == final != holds(array[:n])]
+    return found[0] if found else None
+
+
+@pytest.mark.parametrize("text", ["any(a > 1)", "all(a < 2)", "count(a > 0) < 2", "count(a[1:] < 1) >= 2"])
+@given(array=ELEMENTS)
+def test_the_element_is_named_that_decides_a_condition_on_an_array(text: str, array: list[float]) -> None:
+    for keyword in ("always", "never"):
+        rows = ByRows(Session(Judge(*from_text(f"{HEAD}{keyword} {text}")).plan(())))
+        rows.message(0, "/a", [tuple(array)])
+        failure = rows.tracks[0].decided_at
+        if failure is not None:
+            [condition] = failure.because
+            index = decides(text, array)
+            assert condition.element == (None if index is None else (index, (("a", array[index]),)))
+
+
+@given(array=ELEMENTS)
+def test_of_the_least_and_the_greatest_element_the_first_such_is_named(array: list[float]) -> None:
+    for text, extreme in (("min(a) < 99", min), ("max(a) < 99", max)):
+        rows = ByRows(Session(Judge(*from_text(f"{HEAD}never {text}")).plan(())))
+        rows.message(0, "/a", [tuple(array)])
+        failure, numbers = rows.tracks[0].decided_at, [x for x in array if x == x]
+        assert (failure is None) == (not numbers)
+        if failure is not None:
+            index = array.index(extreme(numbers))
+            assert failure.because[0].element == (index, (("a", array[index]),))
+
+
+def test_an_age_is_given_where_it_has_not_just_passed_its_bound(tmp_path: Path) -> None:
+    rows = ({"time": 0, "v": 1, "level": 0}, {"time": 3.4, "level": 2})
+    report = judged(tmp_path, "never age(v) > 500 ms and level == 2", *rows)
+    assert because(report)[-1] == "age(v) <= 500 ms: false, the age is 3.4 s"
+    report = judged(tmp_path, "always age(v) <= 500 ms", *rows)
+    assert because(report) == ["age(v) <= 500 ms: false"]
+
+
+def test_values_go_by_the_names_of_the_constants_of_their_message(tmp_path: Path) -> None:
+    report = judged(tmp_path, "always level == DiagnosticStatus.OK", {"time": 0, "level": 2})
+    assert "  level: ERROR (2)\n" in report.text()
+    assert because(report) == ["level == OK (0): false, it is ERROR (2)"]
+    assert report.document()["properties"][0]["decided_at"]["constants"] == {"level": "ERROR"}
+
+
+def test_of_several_constants_with_one_value_those_are_meant_that_are_called_alike(tmp_path: Path) -> None:
+    text = "always power == BatteryState.POWER_SUPPLY_STATUS_FULL"
+    report = judged(tmp_path, text, {"time": 0, "power": 1})
+    assert "  power: POWER_SUPPLY_STATUS_CHARGING (1)\n" in report.text()
+
+
+def test_numbers_that_were_compared_with_numbers_have_no_names(tmp_path: Path) -> None:
+    assert "  level: 2.0\n" in judged(tmp_path, "never level == 2", {"time": 0, "level": 2}).text()
+
+
+EPOCH = [{"time": 1_700_000_000 + n, "v": n} for n in range(6)]
+
+
+def test_from_and_until_with_a_plus_count_from_the_beginning(tmp_path: Path) -> None:
+    report = judged(tmp_path, "never v > 2", *EPOCH, since=limit("+1"), until=limit("+4"))
+    assert report.session is not None
+    assert (report.session.steps, report.diagnostics) == (4, ())
+    assert "line 6: violated at +3 s (step 2); " in report.text()
+
+
+def test_a_from_before_the_recording_is_reported(tmp_path: Path) -> None:
+    report = judged(tmp_path, "never v > 2", *EPOCH, since=limit("5"))
+    assert [each.code for each in report.diagnostics] == ["LTL816"]
+    assert "`--from +5`" in (report.diagnostics[0].help or "")
+    assert judged(tmp_path, "never v > 2", *EPOCH, since=limit("1700000000")).diagnostics == ()
+
+
+def test_an_until_before_the_recording_is_reported(tmp_path: Path) -> None:
+    assert [each.code for each in judged(tmp_path, "never v > 2", *EPOCH, until=limit("5")).diagnostics] == ["LTL804"]
+
+
+def test_a_time_with_a_plus_is_an_offset() -> None:
+    assert (limit("+0.5"), limit("0.5"), limit("-3")) == (Offset(500_000_000), 500_000_000, -3_000_000_000)
