@@ -83,7 +83,7 @@ def test_what_is_left_out_is_said(new: Run, capsys: pytest.CaptureFixture[str]) 
     assert new(ROBOT) == 0
     text = capsys.readouterr().out
     assert "# /rosout [rcl_interfaces/msg/Log]: it is about ROS, not about the robot\n" in text
-    assert "# /mission [my_msgs/msg/Mission]: the type is not known" in text
+    assert "# /mission [my_msgs/msg/Mission]: the type is unknown" in text
 
 
 def test_a_scanner_and_odometry_of_one_robot_make_a_stop(new: Run, capsys: pytest.CaptureFixture[str]) -> None:
