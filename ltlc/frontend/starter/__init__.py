@@ -148,11 +148,11 @@ def _recipe(topic: Topic, types: MessageTypes) -> Recipe | str:
     if topic.is_silent:
         return _SILENT
     if not is_topic(topic.name):
-        return "no topic can be called so"
+        return "the name is not a valid topic"
     if ", " in topic.type:
-        return "messages of several types come on it"
+        return "it has messages of several types"
     if topic.type not in types.messages:
-        return "the type is not known; `--msg-path` makes the messages of a package or a bag known"
+        return "the type is unknown; `--msg-path` adds the messages of a package or a bag"
     return recipe_for(topic.type, types)
 
 
