@@ -439,3 +439,10 @@ def test_of_several_values_of_a_message_the_first_is_called_as_its_topic_and_the
 def test_nothing_is_said_of_stamps_beside_other_values(new: Run, capsys: pytest.CaptureFixture[str]) -> None:
     assert new("/goal [action_msgs/msg/GoalStatus]\n") == 0
     assert "stamp" not in capsys.readouterr().out
+
+
+def test_what_is_measured_can_be_asked_of_all_types() -> None:
+    types = MessageTypes(shipped())
+    draft = Draft([Topic(f"/n{number}", type_) for number, type_ in enumerate(TYPES)], types)
+    found = compiled("\n".join([draft.declarations, *(probe.property for probe in draft.probes)]))
+    assert len(found.properties) == len(draft.probes) > len(TYPES)
