@@ -102,7 +102,7 @@ def test_what_is_made_of_a_bag_with_its_own_definitions_judges_it(tmp_path: Path
     assert main(["new", path, "-o", props]) == 0
     text = " ".join(Path(props).read_text().split("\n# "))
     assert "Level.level" in text
-    assert f"`ltlc check --recording {path}`" in text
+    assert f"`ltlc check --recording {Path(path).name}`" in text
     assert main(["check", props, "--recording", path, "--strict"]) == 0
     assert main(["run", props, path]) == 0
 

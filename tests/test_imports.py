@@ -41,6 +41,7 @@ ORDER = {
         "monitoring.judging",
         "monitoring.campaigns",
         "monitoring.mining",
+        "monitoring.measuring",
     ],
     "analysis": ["analysis", "analysis.comparison"],
     "interfaces": [

@@ -140,6 +140,7 @@ decl speed  /odom   Odometry.twist.twist.linear.x
 _rate_=10
 slow :never abs( speed )>2.0 and a=={ 0.1 }-1 near = @ { a , - 1 }-a*- 2<( a )
 x: min(a,2)>1   
+y: rate (a)>=2 Hz over 1 s
 """  # noqa: W291
     assert (
         laid_out(text)
@@ -150,6 +151,7 @@ _rate_ = 10
 slow: never abs(speed) > 2.0 and a =={0.1} -1
 near = @{a, -1} - a * -2 < (a)
 x: min(a, 2) > 1
+y: rate(a) >= 2 Hz over 1 s
 """
     )
 

@@ -34,6 +34,7 @@ ROOMS = {
     "frontend/layout": "test_layout.py test_commands_format.py",
     "base/limits": "test_limits.py",
     "inputs/messages": "test_messages_definitions.py test_language_signals.py",
+    "monitoring/measuring": "test_commands_new.py",
     "monitoring/mining": "test_mining.py",
     "interfaces/pages": "test_pages_*.py test_campaigns_page.py test_api_display.py",
     "program": "test_program_*.py",

@@ -114,6 +114,10 @@ def read_source(path: Path) -> Source | Diagnostic:
     if path == STDIN:
         return _source(Path("<stdin>"), sys.stdin.buffer.read(MAX_BYTES + 1))
     nothing = Source(str(path), "")
+    if _is_recording(path):
+        message = f"{path} is a recording, where a specification is needed"
+        help = f"give the specification first, then recordings: `ltlc run PROPS {path.name}`"
+        return diagnostic("LTL902", nothing, None, message, help=help)
     try:
         if path.is_dir():
             return diagnostic("LTL902", nothing, None, f"{path} is a folder, not a file")
@@ -125,6 +129,19 @@ def read_source(path: Path) -> Source | Diagnostic:
         reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
         return diagnostic("LTL902", nothing, None, f"{path} cannot be read: {reason}")
     return _source(path, data)
+
+
+def _is_recording(path: Path) -> bool:
+    """Whether there is a recording at `path`, as far as names tell."""
+    if not path.is_dir() and path.suffix.lower() not in _OF_RECORDINGS:
+        return False
+    from ltlc.inputs.recordings import is_recording  # which takes as long to import as a check
+
+    return path.exists() and is_recording(path)
+
+
+_OF_RECORDINGS = frozenset({".mcap", ".db3", ".bag", ".csv", ".jsonl", ".ndjson", ".parquet", ".gz", ".zst", ".zstd"})
+"""How the names of recordings end."""
 
 
 def _source(path: Path, data: bytes) -> Source | Diagnostic:

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 
-from ltlc.base.diagnostics import Label
+from ltlc.base.diagnostics import Help, Label
 from ltlc.base.mends import respell, write, writing
 from ltlc.frontend.language.built import Context
 from ltlc.frontend.language.durations import nanoseconds
@@ -230,10 +230,9 @@ def _call(checker: Checker, node: syntax.Call) -> Value | None:
     if name not in FUNCTIONS:
         if name in _CHANGES and len(node.arguments) == 1:
             of = checker.written(node.arguments[0])
-            change = (
-                f"`{of} - @{{{of}, -1}}` is the change since the previous sample; `X.velocity` is the change per second"
-            )
-            checker.report("LTL107", node.function.span, f"there is no function `{name}`", help=change)
+            fix = writing(node.span, f"({of} - @{{{of}, -1}})")
+            change = f"{fix.title}, the change since the previous sample; `X.velocity` is the change per second"
+            checker.report("LTL107", node.function.span, f"there is no function `{name}`", help=Help(change, (fix,)))
             return None
         place, listed = node.function.span, "the functions are " + ", ".join(f"`{f}`" for f in FUNCTIONS)
         help = respell(place, name, FUNCTIONS, is_closed=True) or respell(place, name, KEYWORDS) or listed
@@ -259,6 +258,13 @@ def _call(checker: Checker, node: syntax.Call) -> Value | None:
     arguments = [value(checker, argument) for argument in node.arguments]
     known = [argument for argument in arguments if argument is not None]
     return None if len(known) < len(arguments) else _apply(checker, node, function, known)
+
+
+def _of_samples(checker: Checker, name: str, argument: syntax.Node) -> Help:
+    """How `name` is taken of the last samples of a number."""
+    of = checker.written(argument)
+    fix = writing(argument.span, f"@{{{of}, -9:}}")
+    return Help(f"write `{name}(@{{{of}, -9:}})` for its last 10 samples", (fix,))
 
 
 def _among(checker: Checker, node: syntax.Call, function: Function) -> Value | None:
@@ -321,7 +327,10 @@ def _apply(checker: Checker, node: syntax.Call, function: Function, arguments: l
     """A function of numbers."""
     name, takes = function.value, function.takes
     if not takes.least:
-        checker.report("LTL207", node.span, f"`{name}` takes {takes.words}")
+        (argument,) = node.arguments if len(node.arguments) == 1 else (None,)
+        is_number = argument is not None and isinstance(arguments[0], Scalar)
+        help = _of_samples(checker, name, argument) if is_number and argument is not None else ""
+        checker.report("LTL207", node.span, f"`{name}` takes {takes.words}", help=help)
         return None
     wrong = next((i for i, argument in enumerate(arguments) if not isinstance(argument, Scalar)), None)
     if wrong is not None:
@@ -329,7 +338,8 @@ def _apply(checker: Checker, node: syntax.Call, function: Function, arguments: l
         checker.report("LTL207", node.arguments[wrong].span, message, help="" if takes.array else _OF_EACH)
         return None
     if len(arguments) < takes.least or (takes.most is not None and len(arguments) > takes.most):
-        checker.report("LTL207", node.span, f"`{name}` takes {takes.words}, not {len(arguments)}")
+        help = _of_samples(checker, name, node.arguments[0]) if takes.array and len(arguments) == 1 else ""
+        checker.report("LTL207", node.span, f"`{name}` takes {takes.words}, not {len(arguments)}", help=help)
         return None
     parts = [e for argument in arguments for e in expressions(argument)]
     measured = tuple(part for part in parts if not isinstance(part, Number))

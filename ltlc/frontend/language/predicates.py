@@ -344,10 +344,19 @@ class _Predicates:
         if {type(left), type(right)} == {Scalar, Text}:
             help = self._as_string(node, left)
         if {type(left), type(right)} == {Scalar, Truth} and operator in ("==", "!="):
-            help = "a boolean is used by itself: `p`, `not p`"
+            help = self._as_boolean(node, left) or "a boolean is used by itself: `p`, `not p`"
         if isinstance(left, Array) or isinstance(right, Array):
             help = of_elements(self.checker, node, left, right)
         self.checker.report("LTL205", node.operator.span, message, *places, help=help)
+
+    def _as_boolean(self, node: syntax.Comparison, left: Value) -> Help | None:
+        """A boolean that is compared with 0 or 1, by itself."""
+        number, truth_ = (node.right, node.left) if isinstance(left, Truth) else (node.left, node.right)
+        written = self.checker.written(number)
+        if written not in ("0", "1") or node.margin is not None:
+            return None
+        is_negated = (written == "1") != (node.operator.text == "==")
+        return write(writing(node.span, f"{'not ' if is_negated else ''}{self.checker.written(truth_)}"))
 
     def _as_string(self, node: syntax.Comparison, left: Value) -> Help | str:
         """A number beside a string may be meant as one."""

@@ -6,11 +6,12 @@ models, objects of the simulation, and messages, whose constants have short name
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import replace
 from itertools import takewhile
 
-from ltlc.base.diagnostics import Help, Label
+from ltlc.base.diagnostics import Fix, Help, Label
 from ltlc.base.mends import put, respell, write, writing
 from ltlc.base.source import Span
 from ltlc.frontend.language.names import Associated, Checker, Sort
@@ -28,9 +29,14 @@ from ltlc.specification.specification import fields
 
 _NO_NAMES = {
     "nan": "NaN needs no condition: a sample that is NaN makes no step, and is counted and reported",
-    **dict.fromkeys(("inf", "infinity"), "infinity is written `1 / 0`"),
 }
 """Names of other languages for numbers that have none here."""
+
+MOST_OFFERED = 3
+"""So many names are offered for an abbreviation at most."""
+
+_REFERENCE = re.compile(r"([\w.\[\]:]*\w|[\w.\[\]:]*\])\s*\.\s*\Z")
+"""A reference at the end of a text, with the point behind it."""
 
 _SYNONYMS = {
     **dict.fromkeys(("speed", "vel", "v"), "velocity"),
@@ -128,6 +134,10 @@ def unknown(checker: Checker, node: syntax.Reference, other: Value | None = None
         message = f"nothing called `{name}` is defined"
         checker.report("LTL101", node.name.span, message, help=_NO_NAMES[name.lower()])
         return
+    if name.lower() in ("inf", "infinity"):
+        infinite = write(writing(node.name.span, "(1 / 0)"))
+        checker.report("LTL101", node.name.span, f"nothing called `{name}` is defined", help=infinite)
+        return
     if name in RESERVED or not name.isascii() or "{" in name:
         return
     after = next_token(checker.source.text, node.span.end, ()).terminal
@@ -138,11 +148,17 @@ def unknown(checker: Checker, node: syntax.Reference, other: Value | None = None
         message = f"`{name}` has no `{step.text}`: it is neither declared nor a primitive"
         checker.report("LTL105", step.span, message, help=_known_as(step, PRIMITIVES) or "")
         return
-    help = (other and _as_value(checker, node, other)) or help
+    help = (other and _as_value(checker, node, other)) or help or _abbreviation(checker, node.name)
     if after in TEMPORAL or after == "forall":
         help = help or Help(f"a label ends with a colon: `{name}: …`", (put(node.name.span.end, ":"),))
     help = help or f"`decl {name} TOPIC TYPE.FIELD` declares a signal of that name"
     checker.report("LTL101", node.name.span, f"nothing called `{name}` is defined", help=help)
+
+
+def _abbreviation(checker: Checker, name: syntax.Word) -> Help | None:
+    """The only names that are declared and stand at the beginning of `name`, or at whose beginning it stands."""
+    declared = [each for each in checker.names.declarations if each.startswith(name.text) or name.text.startswith(each)]
+    return write(*(writing(name.span, each) for each in declared)) if 0 < len(declared) <= MOST_OFFERED else None
 
 
 def _as_value(checker: Checker, node: syntax.Reference, other: Value) -> Help | None:
@@ -389,9 +405,13 @@ def _component(checker: Checker, step: syntax.Word, base: Value) -> Value | None
         return choices[step.text]
     help: str | Help = respell(step.span, step.text, choices, is_closed=True) or " ".join(f"`.{c}`" for c in choices)
     if isinstance(base, Array) and step.text in FUNCTIONS:
-        help = f"a function is written before its array: `{step.text}(…)`"
+        of = _REFERENCE.search(checker.source.text, 0, step.span.start)
+        if of is not None:
+            help = write(writing(Span(of.start(), step.span.end), f"{step.text}({of[1]})"))
     if isinstance(base, Scalar):
-        help = f"it is already a number: omit `.{step.text}`"
+        point = checker.source.text.rindex(".", 0, step.span.start)
+        omit = Fix(f"omit `.{step.text}`", ((Span(point, step.span.end), ""),))
+        help = Help(f"it is already a number: {omit.title}", (omit,))
     checker.report("LTL105", step.span, f"{base.noun} has no `{step.text}`", help=help)
     return None
 

@@ -98,7 +98,7 @@ def _touches(before: str, terminal: str) -> bool:
     if terminal == "[":
         return before not in _BEFORE_LISTS
     if terminal == "(":
-        return before in ("FUNCTION", "QUANTIFIER")
+        return before in ("FUNCTION", "QUANTIFIER", "rate")
     return terminal == "{" and before != "in"
 
 

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import re
-import textwrap
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import replace
 from itertools import chain, count
+from textwrap import shorten
 
 from ltlc.base.source import Source
 from ltlc.frontend.language.define import is_topic
+from ltlc.frontend.language.types import values_of
 from ltlc.frontend.layout import layout
-from ltlc.frontend.starter.recipes import Recipe, Rule, recipe_for
+from ltlc.frontend.starter.measured import ROOM, ROOM_IN_TIME, Measured, Probe
+from ltlc.frontend.starter.recipes import Recipe, constants_of, field_at, recipe_for
+from ltlc.frontend.starter.rules import Line, Subject, comment
 from ltlc.frontend.starter.topics import Topic
 from ltlc.frontend.syntax.lexer import (
     CONTEXTUAL,
@@ -25,17 +28,23 @@ from ltlc.frontend.syntax.lexer import (
 from ltlc.inputs.messages.definitions import MessageTypes, shipped
 from ltlc.semantics.durations import UNITS
 
-__all__ = ["starter"]
+__all__ = ["Draft"]
 
 OWN = frozenset({"/rosout", "/parameter_events", "/events/write_split", "/events/read_split"})
 """Topics that ROS and its recorder have for themselves."""
 
-_WIDTH = 118
-_HEAD = (
-    "What the robot must do: a start, made by `ltlc new` from {origin}. The numbers are guesses. Change them, take "
-    "away what does not fit, and take the `#` off what does. `ltlc check` says what is wrong with this file, "
-    "`ltlc run` judges recordings by it, `ltlc build` makes a monitor of it, and where a `?` stands for a number, "
-    "`ltlc mine` finds one."
+LONGEST_REMARK = 80
+"""Comments of message definitions are cut off here."""
+
+_HEAD = "A start for what the robot must do, written by `ltlc new` from {origin}. "
+_UNMEASURED = (
+    "`ltlc mine` finds a number for each `?` in recordings of good runs; until then, `ltlc check` asks for it. "
+    "Change what does not fit, and take the `#` off what does."
+)
+_MEASURED = (
+    "All numbers were measured there. Limits leave room and are rounded outwards: {room:.0%} on values, a factor of "
+    "{factor} on times. Change what does not fit, and take the `#` off what does. A `?` behind a `#` is a "
+    "number that this recording does not tell: `ltlc mine` finds it in others."
 )
 _OF_BAG = (
     " Some of its message types are known from the bag alone: `ltlc check --recording {bag}` and "
@@ -47,36 +56,89 @@ _WORDS = frozenset(
 )
 """What a name had better not be."""
 
-_STOPS = Rule(
+_STOPS = Line(
     "stops",
-    "Whenever something is nearer than 0.5 m, it stands within a second.",
-    "always (min({scan}) < 0.5 implies eventually abs({speed}) < 0.05 within 1 s)",
-    only_offered=True,
+    "Whenever something is nearer than 0.5 m, it stands within ?.",
+    "always (min({scan}) < 0.5 implies eventually abs({speed}) < 0.05 within ?)",
+    is_offered=True,
 )
 
 
-def starter(topics: Sequence[Topic], types: MessageTypes, origin: str, bag: str = "") -> str | None:
-    """A specification about `topics`, which come from `origin`; None if nothing can be said of any of them.
+class Draft:
+    """What can be said of `topics`, and why some are left out."""
 
-    Where it names types that only the `bag` defines, it says how they are known to other commands.
-    `ltlc check` finds nothing in it, and no error in it when the `#` is off everything that it offers.
-    """
-    recipes = [(topic, _recipe(topic, types)) for topic in topics]
-    left_out = [f"{topic.name} [{topic.type}]: {recipe}" for topic, recipe in recipes if isinstance(recipe, str)]
-    used = _Names()
-    sections = [_section(topic, recipe, types, used) for topic, recipe in recipes if not isinstance(recipe, str)]
-    if not sections:
-        return None
-    head = _HEAD.format(origin=origin)
-    if bag and any(section.topic.type not in shipped() for section in sections):
-        head += _OF_BAG.format(bag=bag)
-    lines = [*_comment(head), ""]
-    lines += [line for section in sections for line in (*section.lines, "")]
-    lines += [line for rule, names in _together(sections) for line in _rule(rule, rule.label, names, used)]
-    lines += ["", "# Omitted:", *(line for each in left_out for line in _comment(each))] if left_out else []
-    text = layout(Source("", "\n".join(lines)))
-    assert isinstance(text, str)
-    return text
+    def __init__(self, topics: Sequence[Topic], types: MessageTypes) -> None:
+        used = self._names = _Names()
+        self._types = types
+        self._subjects: list[tuple[Topic, Subject]] = []
+        self._left_out: list[tuple[Topic, str]] = []
+        for topic in topics:
+            recipe = _recipe(topic, types)
+            if isinstance(recipe, str):
+                self._left_out.append((topic, recipe))
+            else:
+                self._subjects.append((topic, _subject(topic, recipe, types, used)))
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether nothing can be said of any topic."""
+        return not self._subjects
+
+    @property
+    def declarations(self) -> str:
+        """All signals."""
+        return "\n".join(line for topic, of in self._subjects for _, line in _declarations(topic, of, self._types))
+
+    @property
+    def probes(self) -> list[Probe]:
+        """What has to be measured, each once."""
+        return list(dict.fromkeys(probe for _, subject in self._subjects for probe in subject.probes()))
+
+    def text(self, origin: str, bag: str = "", measured: Measured | None = None) -> str:
+        """A specification: topics and numbers come from `origin`. Without numbers that were `measured` it has `?`.
+
+        `ltlc check` finds nothing else in it, and no error when the `#` is off all that it offers. Where it names types
+        that only the `bag` defines, it says how they are known to other commands.
+        """
+        head = _HEAD.format(origin=origin) + (
+            _UNMEASURED if measured is None else _MEASURED.format(room=ROOM, factor=ROOM_IN_TIME)
+        )
+        if bag and any(topic.type not in shipped() for topic, _ in self._subjects):
+            head += _OF_BAG.format(bag=bag)
+        lines, labels = [*comment(head), ""], _Names(self._names)
+        left_out = list(self._left_out)
+        for topic, subject in self._subjects:
+            arrivals = measured and measured.arrivals.get(subject.topic)
+            if measured is not None and arrivals is None:
+                left_out.append((topic, _SILENT))
+                continue
+            rules = subject.unmeasured() if not measured or not arrivals else subject.measured(arrivals, measured)
+            lines += [*self._section(topic, subject, list(rules), labels), ""]
+        lines += self._together(labels)
+        lines += ["", "# Omitted:"] if left_out else []
+        lines += [line for topic, why in left_out for line in comment(f"{topic.name} [{topic.type}]: {why}")]
+        text = layout(Source("", "\n".join(lines)))
+        assert isinstance(text, str), text
+        return text
+
+    def _section(self, topic: Topic, subject: Subject, rules: Sequence[Line], labels: _Names) -> Iterator[str]:
+        yield f"# {topic.name} [{topic.type}]"
+        stated = {word for rule in rules if not rule.is_offered for word in re.findall(r"\w+", rule.text)}
+        for name, line in _declarations(topic, subject, self._types):
+            yield line if name in stated else f"# {line}"
+        for rule in rules:
+            yield from rule.written(labels.new(f"{_base(topic.name)}_{rule.label}"))
+
+    def _together(self, labels: _Names) -> Iterator[str]:
+        """What is said of a laser scanner and of odometry in the same namespace."""
+        moving = {_namespace(t): of for t, of in reversed(self._subjects) if t.type == "nav_msgs/msg/Odometry"}
+        for topic, subject in self._subjects:
+            if topic.type == "sensor_msgs/msg/LaserScan" and (other := moving.get(_namespace(topic))):
+                names = {"scan": subject.names["any"], "speed": other.names["speed"]}
+                yield from replace(_STOPS, text=_STOPS.text.format(**names)).written(labels.new(_STOPS.label))
+
+
+_SILENT = "no message on it was recorded"
 
 
 def _recipe(topic: Topic, types: MessageTypes) -> Recipe | str:
@@ -84,7 +146,7 @@ def _recipe(topic: Topic, types: MessageTypes) -> Recipe | str:
     if topic.name in OWN:
         return "it is about ROS, not about the robot"
     if topic.is_silent:
-        return "no message on it was recorded"
+        return _SILENT
     if not is_topic(topic.name):
         return "the name is not a valid topic"
     if ", " in topic.type:
@@ -97,8 +159,8 @@ def _recipe(topic: Topic, types: MessageTypes) -> Recipe | str:
 class _Names:
     """Names of signals and labels, each given once."""
 
-    def __init__(self) -> None:
-        self._taken: set[str] = set()
+    def __init__(self, others: _Names | None = None) -> None:
+        self._taken: set[str] = set(others._taken) if others else set()
 
     def new(self, wanted: str) -> str:
         """`wanted`, or that with a number."""
@@ -107,46 +169,31 @@ class _Names:
         return name
 
 
-@dataclass(frozen=True, slots=True)
-class _Section:
-    """What is said of one topic: the `names` of its signals are by what they end in."""
-
-    topic: Topic
-    names: dict[str, str]
-    lines: tuple[str, ...]
-
-
-def _section(topic: Topic, recipe: Recipe, types: MessageTypes, used: _Names) -> _Section:
-    base = _base(topic.name)
+def _subject(topic: Topic, recipe: Recipe, types: MessageTypes, used: _Names) -> Subject:
+    base, every = _base(topic.name), dict(values_of(topic.type, types))
     names = {suffix: used.new(f"{base}_{suffix}" if suffix else base) for suffix in recipe.signals}
     names["any"] = next(iter(names.values()))
-    stated = " ".join(rule.text.format(**names) for rule in recipe.rules if not rule.only_offered)
-    words = set(re.findall(r"\w+", stated))
-    declarations = [
-        f"{'' if names[suffix] in words else '# '}decl {names[suffix]} {topic.name} {_short(topic.type, types)}"
-        + (f".{path}" if path else "")
-        + (f"  # {remark}" if remark else "")
-        for suffix, (path, remark) in recipe.signals.items()
-    ]
-    rules = [line for rule in recipe.rules for line in _rule(rule, f"{base}_{rule.label}", names, used)]
-    return _Section(topic, names, (f"# {topic.name} [{topic.type}]", *declarations, *rules))
+    kinds = {}
+    for suffix, (path, _) in recipe.signals.items():
+        length, kind = field_at(topic.type, path, types)[2].length, every.get(path, "")
+        kinds[suffix] = "list" if kind == "numbers" and length == 0 else kind
+    return Subject(topic.name, recipe, names, kinds)
 
 
-def _rule(rule: Rule, label: str, names: dict[str, str], used: _Names) -> Iterator[str]:
-    yield f"# {rule.english}"
-    yield f"{'# ' if rule.only_offered else ''}{used.new(label)}: {rule.text.format(**names)}"
+def _declarations(topic: Topic, subject: Subject, types: MessageTypes) -> Iterator[tuple[str, str]]:
+    """The names of signals, and how they are declared, with what is remarked on them."""
+    for suffix, (path, remark) in subject.recipe.signals.items():
+        name = subject.names[suffix]
+        owner, field, _ = field_at(topic.type, path, types)
+        constants = constants_of(topic.type, path, types)
+        listed = ", ".join(f"{constant} {value:g}" for constant, value in (constants[1] if constants else {}).items())
+        remarked = shorten(remark or topic.comments.get((owner, field), "") or listed, LONGEST_REMARK, placeholder=" …")
+        written = f"decl {name} {topic.name} {_short(topic.type, types)}" + (f".{path}" if path else "")
+        yield name, written + (f"  # {remarked}" if remarked else "")
 
 
-def _together(sections: Sequence[_Section]) -> Iterator[tuple[Rule, dict[str, str]]]:
-    """What is said of a laser scanner and of odometry in the same namespace."""
-    moving = {_namespace(each): each for each in reversed(sections) if each.topic.type == "nav_msgs/msg/Odometry"}
-    for each in sections:
-        if each.topic.type == "sensor_msgs/msg/LaserScan" and _namespace(each) in moving:
-            yield _STOPS, {"scan": each.names["any"], "speed": moving[_namespace(each)].names["speed"]}
-
-
-def _namespace(section: _Section) -> str:
-    return section.topic.name.rpartition("/")[0]
+def _namespace(topic: Topic) -> str:
+    return topic.name.rpartition("/")[0]
 
 
 def _base(topic: str) -> str:
@@ -160,7 +207,3 @@ def _short(message: str, types: MessageTypes) -> str:
     package, _, short = message.rpartition("/")
     names = (short, f"{package.partition('/')[0]}/{short}")
     return next((name for name in names if types.find(name) == [message]), message)
-
-
-def _comment(text: str) -> list[str]:
-    return textwrap.wrap(text, _WIDTH, initial_indent="# ", subsequent_indent="# ", break_on_hyphens=False)

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 
+from ltlc.inputs.messages.texts import comments_in
 from ltlc.inputs.recordings import open_recording
 from ltlc.inputs.recordings.bags import BagRecording
 from ltlc.inputs.recordings.bags.plan import absolute
@@ -18,12 +20,13 @@ _LINE = re.compile(r"(\S+) \[([\w/]+(?:, [\w/]+)*)\]", re.ASCII)
 class Topic:
     """A topic, and the full name of its type; of several types all names, with commas.
 
-    It `is_silent` if it is recorded that no message came.
+    It `is_silent` if it is recorded that no message came. `comments` are those of a definition, by message and field.
     """
 
     name: str
     type: str
     is_silent: bool = False
+    comments: Mapping[tuple[str, str], str] = field(default_factory=dict, hash=False, compare=False)
 
 
 class MalformedLineError(Exception):
@@ -58,4 +61,7 @@ def recorded(path: Path) -> list[Topic]:
     recording = open_recording(path, {})
     if not isinstance(recording, BagRecording):
         raise failure("LTL807", path, f"`{path}` has no topics with types", "give a bag")
-    return [Topic(absolute(name), topic.type, topic.count == 0) for name, topic in sorted(recording.topics.items())]
+    return [
+        Topic(absolute(name), topic.type, topic.count == 0, comments_in(topic.type, topic.form, topic.definition))
+        for name, topic in sorted(recording.topics.items())
+    ]

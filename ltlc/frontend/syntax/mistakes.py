@@ -38,6 +38,9 @@ FORMS = {
 
 _RELATIONS = frozenset({"==", "!=", "<", "<=", ">", ">="})
 _UNQUOTED = re.compile(r"\w+(?:[-.:/]\w+)+")
+_PLAIN_WORD = re.compile(r"[\w.]+")
+_BLANKS = re.compile(r"[ \t]*")
+_TOPIC_AND_PATH = re.compile(r"(/[\w/]+)(\.[\w.\[\]]+)?")
 _IN_BRACES = re.compile(r"\{([A-Za-z]\w*)\}", re.ASCII)
 _CLOSING = {"(": ")", "{": "}", "[": "]"}
 _VALUE_BEGINS = frozenset({"NAME", "NUMBER", "STRING", "true", "false", "(", "FUNCTION", "QUANTIFIER"})
@@ -146,7 +149,9 @@ def _id_as_label(at: Situation) -> Diagnostic | None:
     label = _UNQUOTED.match(at.source.text, line)
     if at.token.terminal != ":" or label is None or at.source.text[label.end() : at.token.span.start].strip():
         return None
-    help = write(writing(Span(label.start(), at.token.span.end), f'[id "{label.group()}"]\n'))
+    blank = _BLANKS.match(at.source.text, at.token.span.end)
+    end = blank.end() if blank else at.token.span.end
+    help = write(writing(Span(label.start(), end), f'[id "{label.group()}"]\n'))
     message = f"`{label.group()}` is not a label: labels have letters, digits and `_`; an id is an attribute"
     return diagnostic("LTL001", at.source, Span(*label.span()), message, help=help)
 
@@ -246,7 +251,11 @@ def _chained_comparison(at: Situation) -> Diagnostic | None:
     if at.token.terminal not in _RELATIONS or not at.read or at.read[-1].terminal not in _RELATIONS:
         return None
     first = Label(at.read[-1].span, "the comparison is complete here")
-    help = "compare twice: `a < b and b < c`"
+    help: str | Help = "compare twice: `a < b and b < c`"
+    middle = at.source.text[at.read[-1].span.end : at.token.span.start].strip()
+    if _PLAIN_WORD.fullmatch(middle):
+        again = Span(at.token.span.start, at.token.span.start), f"and {middle} "
+        help = write(Fix(f"write `… {middle} and {middle} …`", (again,)))
     return at.report("LTL013", f"comparisons cannot be chained: {at.found} follows a comparison", first, help=help)
 
 
@@ -277,7 +286,9 @@ def _missing_value(at: Situation) -> Diagnostic | None:
         return None
     before = f"`{at.source.text[at.previous.span.start : at.previous.span.end]}`"
     if at.previous.terminal == "=" and at.token.terminal == "/":
-        help = f"declare a signal: `decl {at.read[-2].text} /TOPIC TYPE.FIELD`"
+        topic = _TOPIC_AND_PATH.match(at.source.text, at.token.span.start)
+        path = (topic and topic[2]) or ".FIELD"
+        help = f"declare a signal: `decl {at.read[-2].text} {topic[1] if topic else '/TOPIC'} TYPE{path}`"
         return at.report("LTL006", f"expected a value after {before}, not a topic", help=help)
     form = _form(at)
     what = "a property" if at.previous.terminal in FORMS or "always" in at.expected else "a value"

@@ -6,6 +6,8 @@ After an error the parser goes on at the next place that looks like the beginnin
 from __future__ import annotations
 
 import json
+import re
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cache
 from itertools import pairwise
@@ -105,9 +107,10 @@ def expected_after(text: str) -> Expectation:
 class _Parser:
     """One parse of one text; the state of the automaton is its only memory."""
 
-    def __init__(self, source: Source, automaton: Automaton) -> None:
+    def __init__(self, source: Source, automaton: Automaton, text: str | None = None) -> None:
+        """Parse `text`, which is that of `source`, some of it blank."""
         self.source = source
-        self.text = misspelled.joined(source.text)
+        self.text = misspelled.joined(source.text) if text is None else text
         self.automaton = automaton
         self.stack = Stack()
         self.diagnostics: list[Diagnostic] = misspelled.split_words(source)
@@ -308,10 +311,28 @@ class _Parser:
         }
         divisions = (c for c in commands if phrases.UNFINISHED.search(self.text, c.span.start, c.span.end))
         lines |= {_line_at(self.text, command.span.start) for command in divisions}
+        lines |= {_line_at(self.text, match.end()) for match in _BEGINS_WITH_TOPIC.finditer(self.text)}
         foreigners = {line: found for line in lines if (found := self._foreign(line))}
+        if any(c.span.start < line.start < c.span.end for c in commands for line in foreigners):
+            return self._without(foreigners)
         for line, found in foreigners.items():
             self._tell(line, found)
         return [c for c in commands if not any(line.start <= c.span.start <= line.end for line in foreigners)]
+
+    def _without(self, foreigners: Mapping[Span, Diagnostic]) -> list[syntax.Command]:
+        """The commands of the text without lines of which one was taken for the rest of a command before it."""
+        text = self.text
+        for line in foreigners:
+            text = text[: line.start] + " " * (line.end - line.start) + text[line.end :]
+        parser = _Parser(self.source, self.automaton, text)
+        tree, diagnostics = parser.run()
+        self.taken, self.diagnostics = parser.taken, [*diagnostics, *foreigners.values()]
+        self.lost = [*parser.lost, *(self.text[line.start : line.end] for line in foreigners)]
+        return list(tree.commands)
+
+
+_BEGINS_WITH_TOPIC = re.compile(r"^[ \t]*(?=/\w)", re.MULTILINE)
+"""The beginning of a line that would be taken for the rest of a division."""
 
 
 def _line_at(text: str, place: int) -> Span:

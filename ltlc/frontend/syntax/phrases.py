@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from functools import partial
 from typing import NamedTuple
 
-from ltlc.frontend.syntax.lexer import FOREIGN
+from ltlc.frontend.syntax.lexer import FOREIGN, FOREIGN_UNITS
+from ltlc.frontend.syntax.phrasebook import AT_FIRST, PHRASES, SECONDS, TEMPORAL
 
 LONGEST = 200
 """Longer lines are not looked at: they could match in too many ways."""
@@ -24,19 +24,6 @@ MOST_WAYS = 6
 """So many ways to go on are kept."""
 
 
-@dataclass(frozen=True, slots=True)
-class Phrase:
-    """What a whole text is that matches `pattern`, as it is `written` here.
-
-    `differs` says how that is not the same, if it is not. In `written`, groups of the pattern stand in braces: as they
-    are with `!r`, else in parentheses where they are more than a comparison.
-    """
-
-    pattern: str
-    written: str
-    differs: str = ""
-
-
 class Meant(NamedTuple):
     """The line to write instead of one in the words of others, and where it says something else."""
 
@@ -44,153 +31,23 @@ class Meant(NamedTuple):
     differs: tuple[str, ...]
 
 
-_P, _Q = r"(?P<p>[^,]+?)", r"(?P<q>[^,]+?)"
-_NESTED = r"\((?:[^()]|\((?:[^()]|\([^()]*\))*\))*\)"
-_ONE, _OTHER = (rf"(?P<{name}>(?:{_NESTED}|(?!\b(?:and|or|implies)\b)[^,()])+?)" for name in "pq")
-_DURATION = r"\d+(?:\.\d+)?\s*(?:ns|us|ms|s|min|h)"
-_D, _WITHIN = rf"(?P<d>{_DURATION})", rf"(?P<w>\s+within\s+{_DURATION})?"
-_TO = r"_?\s*\[?\s*(?:<=?|0?\s*[,:])\s*(?P<n>\d+(?:\.\d+)?)\s*(?:s\b)?\s*\]?"
-_FROM = r"_?\s*\[\s*(?P<a>\d+(?:\.\d+)?)\s*(?:s\b)?\s*[,:]\s*(?P<n>\d+(?:\.\d+)?)\s*(?:s\b)?\s*\]"
-_SECONDS = "the bound is taken to be in seconds"
-_STILL = "in this P still has to hold at the instant at which the interval begins"
-_AT_FIRST = "a condition that stands alone is meant always; of the first step alone, it is `initially P`"
-_SAMPLES = "`@{}` counts samples of the signal, `X` steps of the run"
-_SCOPE = "an `after_until` has an episode each time, HPL's scope is the first"
-_EVENT = r"(?P<{}>/[\w/~]+(?:\s*\{{[^{{}}]*\}})?)"
-_E, _F = (_EVENT.format(name) for name in "ef")
-_GLOBALLY = r"(?:globally\s*:\s*)?"
-_SHALL = r"(?:the\s+)?\w+\s+shall\s+"
-_ALWAYS, _EVENTUALLY, _PREFIX = "(?:always|globally|G)", "(?:eventually|finally|F)", r"(?:always\s+)?"
-_THEN = r"(?:\s*,\s*then\s+|\s*,\s*|\s+then\s+)"
-_EVERY = "this is about every moment at which P holds; where it begins to is `P and not previously P`"
-_PER_SAMPLE = "this is the change from one sample to the next, not per second"
-_FROM_SECOND = "this counts messages, `X` steps of the run"
-_FIFTY = "this is of the last 50 samples, however long they took: windows of time are not averaged"
-_SUBJECT = r"(?P<v>[A-Za-z]\w*(?:\.\w+)*)"
-_COMPARED = r"(?P<c>\s*(?:[<>]=?|[=!]=)\s*[-\w.]+)?"
-_WINDOW = rf"\(\s*{_SUBJECT}\s*\)\s+(?:over|within)\s+{_D}"
-
-PHRASES: tuple[Phrase, ...] = (
-    # Punctuation and single words.
-    Phrase(r"(?P<x>.*\S)\s*;+", "{x!r}"),
-    Phrase(r"(?P<l>\w+)\s*:\s*(?P<x>\w+\s*:.*)", "{x!r}", "a property has one label"),
-    Phrase(r"(?P<x>.*)\|(?P<v>[^|]+)\|(?P<y>.*)", "{x!r}abs({v!r}){y!r}"),
-    Phrase(rf"(?P<x>.*)\bin\s+{_D}(?P<y>.*)", "{x!r}within {d!r}{y!r}"),
-    Phrase(r"(?P<x>.*)\bage\(/(?P<t>\w+)\)(?P<y>.*)", "{x!r}age({t!r}){y!r}"),
-    Phrase(r"(?P<x>.*)\bmin\((?P<c>[^()]*[<>][^()]*)\)(?P<y>.*)", "{x!r}any({c!r}){y!r}"),
-    Phrase(r"(?P<x>.*)\bmax\((?P<c>[^()]*[<>][^()]*)\)(?P<y>.*)", "{x!r}any({c!r}){y!r}"),
-    Phrase(r"(?P<x>.*?)(?<![\w.])\.(?P<n>\d+)(?P<y>.*)", "{x!r}0.{n!r}{y!r}"),
-    Phrase(
-        rf"(?P<x>.*?){_SUBJECT}\s+(?:is\s+)?between\s+(?P<n>[-\w.]+)\s+and\s+(?P<m>[-\w.]+)(?P<y>.*)",
-        "{x!r}({v!r} >= {n!r} and {v!r} <= {m!r}){y!r}",
-    ),
-    Phrase(rf"(?P<x>.*?){_SUBJECT}'(?P<y>.*)", "{x!r}({v!r} - @{{{v!r}, -1}}){y!r}", _PER_SAMPLE),
-    Phrase(
-        rf"(?P<x>.*?){_SUBJECT}\s+in\s+(?:\[\s*(?P<n>[-\w.]+)\s*,\s*(?P<m>[-\w.]+)\s*\]|(?P<k>-?\d+)\.\.(?P<l>-?\d+))(?P<y>.*)",
-        "{x!r}({v!r} >= {n!r}{k!r} and {v!r} <= {m!r}{l!r}){y!r}",
-    ),
-    # Declarations.
-    Phrase(r"(?P<x>decl\s+\w+\s+\S+\s+\w+)(?:::msg)?::(?P<y>\S+)", "{x!r}/{y!r}"),
-    Phrase(r"(?P<x>decl\s+\w+\s+\S+\s+[\w/]+)\s+(?P<y>[a-z][\w.\[\]]*)", "{x!r}.{y!r}"),
-    # FRET.
-    Phrase(rf"(?:whenever)\s+{_P},?\s+(?P<s>{_SHALL}.+)", "always ({p} implies ({s!r}))"),
-    Phrase(rf"(?:upon|when|if)\s+{_P},?\s+(?P<s>{_SHALL}.+)", "always ({p} and not previously {p} implies ({s!r}))"),
-    Phrase(rf"in\s+(?P<m>\w+)\s+(?:mode,?\s+)?(?P<s>{_SHALL}.+)", "after_until {m}, not {m}, ({s!r})"),
-    Phrase(rf"{_SHALL}always\s+satisfy\s+(?P<r>.+)", "always {r}"),
-    Phrase(rf"{_SHALL}never\s+satisfy\s+(?P<r>.+)", "never {r}"),
-    Phrase(rf"{_SHALL}immediately\s+satisfy\s+(?P<r>.+)", "initially {r}"),
-    Phrase(rf"{_SHALL}within\s+{_D}(?:econds?)?\s+satisfy\s+(?P<r>.+)", "eventually {r} within {d!r}"),
-    Phrase(rf"{_SHALL}for\s+{_D}(?:econds?)?\s+satisfy\s+(?P<r>.+)", "always {r} for {d!r}"),
-    Phrase(rf"{_SHALL}until\s+{_P}\s+satisfy\s+(?P<r>.+)", "(always {r}) or (until {p}, always {r})"),
-    Phrase(rf"{_SHALL}before\s+{_P}\s+satisfy\s+(?P<r>.+)", "(never {p}) or (until {p}, eventually {r})"),
-    Phrase(rf"{_SHALL}(?:eventually\s+)?(?:satisfy\s+)?(?P<r>.+)", "eventually {r}"),
-    # HPL: scopes, then patterns.
-    Phrase(rf"after\s+{_E}\s+until\s+{_F}\s*:\s*(?P<x>.+)", "after_until {e}, {f}, {x!r}", _SCOPE),
-    Phrase(rf"after\s+{_E}\s*:\s*(?P<x>.+)", "after {e}, {x!r}"),
-    Phrase(rf"until\s+{_F}\s*:\s*no\s+{_E}", "(never {e}) or (until {f}, never {e})"),
-    Phrase(rf"until\s+{_F}\s*:\s*some\s+{_E}", "until {e}, never {f}"),
-    Phrase(rf"until\s+{_F}\s*:\s*(?P<x>.+)", "((never {f}) and ({x!r})) or (until {f}, ({x!r}))"),
-    Phrase(rf"{_GLOBALLY}no\s+{_E}", "never {e}"),
-    Phrase(rf"{_GLOBALLY}some\s+{_E}{_WITHIN}", "eventually {e}{w!r}"),
-    Phrase(rf"{_GLOBALLY}no\s*\{{\s*(?P<p>[^{{}}]+)\}}", "never {p}"),
-    Phrase(rf"{_GLOBALLY}some\s*\{{\s*(?P<p>[^{{}}]+)\}}", "eventually {p}"),
-    Phrase(rf"{_GLOBALLY}{_P}\s+(?:causes|leads\s+to)\s+{_Q}{_WITHIN}", "always ({p} implies eventually {q}{w!r})"),
-    Phrase(rf"{_GLOBALLY}{_P}\s+requires\s+{_Q}{_WITHIN}", "always ({p} implies once {q}{w!r})"),
-    Phrase(rf"{_GLOBALLY}{_P}\s+forbids\s+{_Q}{_WITHIN}", "always ({p} implies never {q}{w!r})"),
-    # English.
-    Phrase(rf"{_PREFIX}(?:if|whenever)\s+{_P}{_THEN}(?P<q>.+)", "always ({p} implies {q!r})"),
-    Phrase(rf"{_PREFIX}when\s+{_P}{_THEN}(?P<q>.+)", "always ({p} implies {q!r})", _EVERY),
-    Phrase(r"G\s*(?P<x>\(.+\))", "always {x!r}"),
-    Phrase(r"F\s*(?P<x>\(.+\))", "eventually {x!r}"),
-    Phrase(rf"after\s+{_P}\s+until\s+{_Q}\s*[,:]\s*(?P<x>.+)", "after_until {p}, {q}, {x!r}"),
-    Phrase(rf"between\s+{_P}\s+and\s+{_Q}\s*[,:]\s*(?P<x>.+)", "after_until {p}, {q}, {x!r}"),
-    Phrase(
-        rf"before\s+{_P}\s*[,:]\s*(?P<x>(?:always|never|eventually)\b.+)",
-        "((never {p}) and ({x!r})) or (until {p}, ({x!r}))",
-    ),
-    # Intervals.
-    Phrase(
-        rf"{_ONE}\s*\b(?:U|until){_TO}\s*{_OTHER}",
-        "(until {q}, always {p}) and (eventually {q} within {n!r} s)",
-        _SECONDS,
-    ),
-    Phrase(rf"{_EVENTUALLY}{_TO}\s*{_ONE}", "eventually {p} within {n!r} s", _SECONDS),
-    Phrase(rf"{_ALWAYS}{_TO}\s*{_ONE}", "always {p} for {n!r} s", _SECONDS),
-    Phrase(rf"(?:once|O|P){_TO}\s*{_ONE}", "once {p} within {n!r} s", _SECONDS),
-    Phrase(rf"(?:historically|H){_TO}\s*{_ONE}", "historically {p} for {n!r} s", _SECONDS),
-    Phrase(rf"{_EVENTUALLY}{_FROM}\s*{_ONE}", "eventually {p} within [{a!r} s, {n!r} s]", _SECONDS),
-    Phrase(rf"{_ALWAYS}{_FROM}\s*{_ONE}", "always {p} for [{a!r} s, {n!r} s]", _SECONDS),
-    Phrase(
-        rf"{_ONE}\s*\b(?:U|until){_FROM}\s*{_OTHER}",
-        "(always {p} for {a!r} s) and (within [{a!r} s, {n!r} s], until {q}, always {p})",
-        f"{_SECONDS}; {_STILL}",
-    ),
-    # Operators between two parts, and `X`.
-    Phrase(rf"{_PREFIX}{_ONE}\s+until\s+{_D}", "always {p} for {d!r}"),
-    Phrase(rf"never\s+{_ONE}\s+(?:U|until)\s+{_OTHER}", "until {q}, never {p}"),
-    Phrase(rf"never\s+{_ONE}\s+(?:W|unless)\s+{_OTHER}", "(until {q}, never {p}) or never {p}"),
-    Phrase(rf"{_PREFIX}{_ONE}\s+(?:U|until)\s+{_OTHER}", "until {q}, always {p}"),
-    Phrase(r"\[\]\s*(?P<p>.+)", "always {p}"),
-    Phrase(r"<>\s*(?P<p>.+)", "eventually {p}"),
-    Phrase(rf"{_PREFIX}{_ONE}\s+(?:W|unless|weak_until)\s+{_OTHER}", "(until {q}, always {p}) or always {p}"),
-    Phrase(rf"{_ONE}\s+(?:R|V|releases|release)\s+{_OTHER}", "(until {p} and {q}, always {q}) or always {q}"),
-    Phrase(rf"{_ONE}\s+S\s+{_OTHER}", "{p} since {q}"),
-    Phrase(rf"{_ONE}\s+T\s+{_OTHER}", "not (not {p} since not {q})"),
-    Phrase(
-        rf"{_SUBJECT}{_COMPARED}\s+(?P<w>implies|and|or)\s+(?:X|next)\b\s*(?P<q>.+)",
-        "@{{{v!r}, -1}}{c!r} {w!r} {q}",
-        _SAMPLES,
-    ),
-    Phrase(
-        rf"\A(?:always|G)\s+X\s+{_SUBJECT}{_COMPARED}",
-        "after once new {v!r} 2 times, always {v!r}{c!r}",
-        _FROM_SECOND,
-    ),
-    Phrase(rf"\AX\s+{_SUBJECT}{_COMPARED}", "after once new {v!r} 2 times, initially {v!r}{c!r}", _FROM_SECOND),
-    # Windows of time.
-    *(
-        Phrase(rf"(?P<x>.*)\b{word}{_WINDOW}\s*{asked}\s*(?P<n>[-\w.]+)(?P<y>|\s.*)", f"{{x!r}}{written}{{y!r}}")
-        for word, asked, written in (
-            ("max", "(?P<o>>=?)", "once {v!r} {o!r} {n!r} within {d!r}"),
-            ("max", "<", "not once {v!r} >= {n!r} within {d!r}"),
-            ("max", "<=", "not once {v!r} > {n!r} within {d!r}"),
-            ("min", "(?P<o><=?)", "once {v!r} {o!r} {n!r} within {d!r}"),
-            ("min", ">", "not once {v!r} <= {n!r} within {d!r}"),
-            ("min", ">=", "not once {v!r} < {n!r} within {d!r}"),
-        )
-    ),
-    Phrase(rf"(?P<x>.*)\b(?P<f>mean|median|sum){_WINDOW}(?P<y>.*)", "{x!r}{f!r}(@{{{v!r}, -49:}}){y!r}", _FIFTY),
-)
-"""In the order in which they are tried, those of whole sentences before those of their parts."""
-
 COMPILED = tuple((re.compile(phrase.pattern), phrase) for phrase in PHRASES)
-UNFINISHED = re.compile(r"\b(?:no|some)\s*/")
+UNFINISHED = re.compile(r"\b(?:no|some|new)\s*/")
 """What is left of HPL, and would be a division."""
 
-_OPERATORS = re.compile(r"&&?|\|\||<->|<=>|->|=>|!(?!=)|¬|∧|∨|→|⇒|≤|≥|≠")
+_MIXED = re.compile(rf"(?!(?:always|never|eventually)\b)[^()]*?\bimplies\s+\(?{TEMPORAL}.*")
+"""What would be asked about: whether the condition is meant at the first step, or always."""
+
+_AT_EACH = "this is about every step; of the first alone, it is `(not initially P) or Q`"
+
+_OPERATORS = re.compile(
+    r"\|->|\|=>|-->|~>|\b(?:next|until|eventually)!|&&?|/\\|\\/|\|\||<->|<=>|->|=>|!(?!=)|¬|∧|∨|→|⇒|≤|≥|≠"
+)
+_FOREIGN_DURATION = re.compile(rf"(?<=\d)\s*({'|'.join(sorted(FOREIGN_UNITS, key=len, reverse=True))})\b")
+_SENTENCE = re.compile(r"(?:The|When|Whenever|Upon|If|In|While|Between|After|Before|Globally|Every|At)\b")
 _CONNECTIVES = re.compile(r"\s+(?:and|or|implies)\s+")
 _TOPIC = re.compile(r"(/[\w/~]+)\s*(?:\{([^{}]*)\})?\Z")
-_DECLARED = re.compile(r"\bdecl\s+(\w+)\s+/?(\S+)\s+[\w/]+(?:\.([\w.]+))?")
+_DECLARED = re.compile(r"\bdecl\s+(\w+)\s+/?(\S+)\s+([\w/]+)(?:\.([\w.]+))?")
 
 
 def meant(line: str, text: str, is_accepted: Callable[[str], bool]) -> Meant | None:
@@ -200,7 +57,12 @@ def meant(line: str, text: str, is_accepted: Callable[[str], bool]) -> Meant | N
     label, body = _labelled(line)
     for beginning, rest in ((label, body), ("", line)) if label else (("", line),):
         plain = " ".join(_OPERATORS.sub(_operator, rest).split())
+        plain = _FOREIGN_DURATION.sub(lambda unit: f" {FOREIGN_UNITS[unit[1]]}", plain)
+        plain = _SENTENCE.sub(lambda word: word[0].lower(), plain, count=1) if _SENTENCE.match(plain) else plain
         found = _rewritten(plain, text, partial(_is_accepted, is_accepted, beginning))
+        if found is not None and _MIXED.fullmatch(found.text):
+            differs = tuple(note for note in found.differs if note != AT_FIRST)
+            found = Meant(f"always ({found.text})", (*differs, _AT_EACH))
         if found is not None:
             return found._replace(text=beginning + found.text)
     return None
@@ -217,7 +79,7 @@ def _labelled(line: str) -> tuple[str, str]:
 
 
 def _operator(found: re.Match[str]) -> str:
-    word = FOREIGN[found.group()]
+    word = FOREIGN.get(found.group(), found.group().rstrip("!"))
     return "not " if word == "not" else f" {word} " if word.isalpha() else word
 
 
@@ -242,9 +104,13 @@ def _once(so_far: Meant, text: str) -> Iterator[Meant]:
             match = pattern.fullmatch(whole, part.start, part.end)
             if match is None or not all(map(_is_whole, match.groups(""))):
                 continue
-            written = phrase.written.format(**{name: _Group(of or "", text) for name, of in match.groupdict().items()})
+            groups = {name: _Group(of or "", text) for name, of in match.groupdict().items()}
+            in_seconds = match.groupdict().get("u") == ""
+            written = phrase.written.format(**groups | ({"u": _Group("s", text)} if in_seconds else {}))
+            if written == match.group():
+                continue
             written = written if part.is_apart else f"({written})"
-            differs = (phrase.differs, _AT_FIRST if part.is_beside else "")
+            differs = (phrase.differs, SECONDS if in_seconds else "", AT_FIRST if part.is_beside else "")
             notes = so_far.differs + tuple(filter(None, differs))
             yield Meant(whole[: part.start] + written + whole[part.end :], notes)
             break
@@ -308,6 +174,29 @@ class _Group:
     def __repr__(self) -> str:
         return self._matched
 
+    @property
+    def name(self) -> str:
+        """What a signal of this topic is called; if none is declared, nothing that could be a name."""
+        return next((m[1] for m in _DECLARED.finditer(self._text) if m[2] == self._matched.strip("/")), "?")
+
+    @property
+    def type(self) -> str:
+        """What another declaration of this topic has as its type."""
+        found = (m[3] for m in _DECLARED.finditer(self._text) if m[2] == self._matched.strip("/"))
+        return next(found, "")
+
+    @property
+    def signal(self) -> str:
+        """The signal that is declared with this topic and this path."""
+        steps = self.path.split(".")
+        declared = ((m[1], [*m[2].split("/"), *(m[4] or "").split(".")]) for m in _DECLARED.finditer(self._text))
+        return next((name for name, of in declared if of == steps), self._matched)
+
+    @property
+    def path(self) -> str:
+        """With points for slashes."""
+        return self._matched.strip("/").replace("/", ".")
+
     def __str__(self) -> str:
         part = _event(self._matched.strip(), self._text)
         is_whole = part[:1] == "(" and part[-1:] == ")" and _is_closed(part)
@@ -328,7 +217,7 @@ def _event(part: str, text: str) -> str:
     topic = _TOPIC.match(part)
     if topic is None:
         return part
-    fields = {m[3] or "": m[1] for m in _DECLARED.finditer(text) if m[2] == topic[1].strip("/")}
+    fields = {m[4] or "": m[1] for m in _DECLARED.finditer(text) if m[2] == topic[1].strip("/")}
     name = next(iter(fields.values()), topic[1].rpartition("/")[2])
     if topic[2] is None:
         return f"new {name}"

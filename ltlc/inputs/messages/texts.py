@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from functools import lru_cache
 
 from ltlc.inputs.messages.definitions import PLACEHOLDER, STRINGS, Constant, FieldType, Message
@@ -55,6 +56,16 @@ def defined(type_: str, form: str, text: str) -> dict[str, Message]:
 def _messages(name: str, text: str) -> dict[str, Message]:
     """The message `name`, and those that follow it between lines of `=`, each after `MSG: its/name`."""
     found: dict[str, Message] = {}
+    for of, lines in _titled(name, text):
+        if of == name and any(line.strip() == "---" for line in lines):
+            found |= interface(name.rpartition("_")[0], "\n".join(lines))
+        else:
+            found[of] = _message(lines, of)
+    return found
+
+
+def _titled(name: str, text: str) -> Iterator[tuple[str, list[str]]]:
+    """The definitions in one of `name`, each with its lines. Raises ValueError."""
     for number, section in enumerate(_SEPARATOR.split(text)):
         of, lines = name, section.splitlines()
         if number:
@@ -63,10 +74,25 @@ def _messages(name: str, text: str) -> dict[str, Message]:
             if mark.strip() != "MSG":
                 raise ValueError("a section does not begin with `MSG:`")
             of, lines = full_name(of.strip()), lines[title + 1 :]
-        elif any(line.strip() == "---" for line in lines):
-            found |= interface(name.rpartition("_")[0], section)
-            continue
-        found[of] = _message(lines, of)
+        yield of, lines
+
+
+def comments_in(type_: str, form: str, text: str) -> dict[tuple[str, str], str]:
+    """The comments on the lines of fields, by message and field, in a definition of `type_`.
+
+    Nothing of a definition that cannot be read, or that is in another form than `.msg` files.
+    """
+    found: dict[tuple[str, str], str] = {}
+    try:
+        definitions = list(_titled(type_, text)) if form in ("ros2msg", "ros1msg") else []
+    except ValueError:
+        return {}
+    for name, lines in definitions:
+        for line in lines:
+            field, _, comment = line.partition("#")
+            match = _FIELD.match(field)
+            if match and not match[4] and comment.strip(" #\t"):
+                found[name, match[3]] = " ".join(comment.strip(" #\t").split())
     return found
 
 

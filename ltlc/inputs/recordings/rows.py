@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 from dataclasses import dataclass
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
 from ltlc.base.codes import diagnostic
@@ -61,9 +62,20 @@ def time_of_row(path: Path, place: str, previous: Nanoseconds | None, written: s
     except (NotAValueError, ValueError):
         message = f"{place}: `{written}` is not a time in seconds"
         help = "is it in nanoseconds? times must be in seconds, before the year 2116" if written.isdigit() else ""
-        raise failure("LTL804", path, message, help) from None
+        raise failure("LTL804", path, message, help or calendar_help(written.strip('"'))) from None
     check_order(path, place, previous, time)
     return time
+
+
+def calendar_help(written: str) -> str:
+    """How a time of a calendar (ISO 8601) is written in seconds; empty for what is no such time."""
+    try:
+        time = datetime.fromisoformat(written)
+    except ValueError:
+        return ""
+    since_1970 = (time if time.tzinfo else time.replace(tzinfo=UTC)) - datetime(1970, 1, 1, tzinfo=UTC)
+    seconds = seconds_text(since_1970 // timedelta(microseconds=1) * 1000)
+    return f"write it in seconds since 1970: `{seconds}`{'' if time.tzinfo else ', if it is in UTC'}"
 
 
 def follows(previous: Nanoseconds | None, time: Nanoseconds) -> bool:

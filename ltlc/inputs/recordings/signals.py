@@ -153,6 +153,10 @@ _Source = _Own | _Marked | _Gathered | _Taken
 _ARRAYS = {type_.element: type_ for type_ in ValueType if type_.element is not None}
 
 
+MOST_LISTED = 5
+"""So many columns are offered at most."""
+
+
 class FromTable:
     """A table, its columns read as `signals`. Raises RecordingError."""
 
@@ -184,7 +188,10 @@ class FromTable:
 
     def remedy(self, name: str) -> str:
         """The column that it may have been meant by, if there is one."""
-        return did_you_mean(name, self.columns)
+        others = [head for head in self.columns if head not in self._signals]
+        listed = ", ".join(f"`{head}`" for head in others[:MOST_LISTED])
+        renamed = f"a signal is read from the column of its name: rename one, of {listed}, or the signal"
+        return did_you_mean(name, self.columns) or (renamed if others else "")
 
     @property
     def beginning(self) -> Nanoseconds | None:

@@ -133,7 +133,11 @@ def time(text: str) -> Limit:
     try:
         return limit(text)
     except ValueError:
-        raise argparse.ArgumentTypeError(f"{text!r} is not a time in seconds, such as 12.5 or +12.5") from None
+        from ltlc.inputs.recordings.rows import calendar_help
+
+        help = calendar_help(text)
+        message = f"{text!r} is not a time in seconds, such as 12.5 or +12.5{f': {help}' if help else ''}"
+        raise argparse.ArgumentTypeError(message) from None
 
 
 def names(text: str) -> list[str]:

@@ -35,6 +35,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     arguments.add_reading(parser)
     arguments.add_budget(parser, "limits for translating one property; judging it may take six times the seconds", 10.0)
     parser.add_argument(
+        "-t",
         "--target",
         choices=tuple(FILE_NAMES),
         default="ros2",

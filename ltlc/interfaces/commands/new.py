@@ -7,14 +7,16 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+from ltlc.automata import SpotMissing
 from ltlc.base.files import write_text
 from ltlc.base.source import Source
 from ltlc.frontend.language import types_for
-from ltlc.frontend.starter import starter
+from ltlc.frontend.starter import Draft
 from ltlc.frontend.starter.topics import MalformedLineError, Topic, listed, recorded
 from ltlc.inputs.recordings import RecordingError
 from ltlc.interfaces.commands import arguments
 from ltlc.interfaces.commands.common import OK, UNUSABLE, report, unusable, unwritable
+from ltlc.monitoring.measuring.measure import measure
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -50,11 +52,22 @@ def run(options: argparse.Namespace) -> int:
     bags = [] if options.bag is None else [options.bag]
     types, problems = types_for(Source("ltlc new", ""), options.msg_path, bags)
     report(problems)
-    origin = f"the topics of {options.bag}" if options.bag else "a list of topics"
-    text = starter(topics, types, origin, str(options.bag or ""))
-    if problems or text is None:
-        return UNUSABLE if problems else unusable(_nothing(topics))
-    return _write(text, options.output)
+    if problems:
+        return UNUSABLE
+    draft = Draft(topics, types)
+    if draft.is_empty:
+        return unusable(_nothing(topics))
+    if options.bag is None:
+        return _write(draft.text("a list of topics"), options.output)
+    try:
+        measured = measure(draft.declarations, draft.probes, options.bag, options.msg_path)
+    except RecordingError as error:
+        report([error.diagnostic])
+        return UNUSABLE
+    except SpotMissing as error:
+        return unusable(str(error))
+    name = options.bag.resolve().name
+    return _write(draft.text(name, name, measured), options.output)
 
 
 def _topics(bag: Path | None) -> Sequence[Topic]:

@@ -8,9 +8,11 @@ from __future__ import annotations
 
 import argparse
 import importlib
+import re
 from collections.abc import Collection
-from typing import Any
+from typing import Any, NoReturn
 
+from ltlc.base.nearest import did_you_mean
 from ltlc.base.revision import version_text
 
 COMMANDS = {
@@ -33,7 +35,7 @@ QUIET = "print findings and results only: no progress, no count, no names of fil
 
 def parser_of(called: Collection[str]) -> argparse.ArgumentParser:
     """The parser of `ltlc`, in which the commands `called` have their arguments, and the others have a name only."""
-    parser = argparse.ArgumentParser(
+    parser = _Parser(
         prog="ltlc",
         description="Compile properties of robots into runtime monitors.",
         epilog="Exit codes: 0 all well; 1 a finding; 2 unusable input or usage, or a bug; "
@@ -55,6 +57,19 @@ class _Version(argparse.Action):
     def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
         print(f"ltlc {version_text()}")
         parser.exit()
+
+
+class _Parser(argparse.ArgumentParser):
+    """Asks whether a known word is meant where an unknown one stands."""
+
+    def error(self, message: str) -> NoReturn:
+        if found := _CHOICE.search(message):
+            near = did_you_mean(found[1], re.findall(r"[\w-]+", found[2]))
+            message += f"; {near}" if near else ""
+        super().error(message)
+
+
+_CHOICE = re.compile(r"invalid choice: '([^']*)' \(choose from (.*)\)")
 
 
 def module_of(command: str) -> Any:

@@ -1,0 +1,1 @@
+"""What recordings show of a robot, measured for a specification to start with."""
