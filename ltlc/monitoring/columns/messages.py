@@ -9,7 +9,7 @@ import numpy as np
 
 from ltlc.inputs.recordings.blocks import Array, Block, Places, Ragged, Samples
 from ltlc.monitoring.columns.atoms import bits_of, prepare
-from ltlc.monitoring.columns.bits import Mask, union, unpack
+from ltlc.monitoring.columns.bits import Bytes, Mask, union, unpack
 from ltlc.monitoring.columns.derived import derive
 from ltlc.monitoring.columns.prepared import Prepared
 from ltlc.monitoring.columns.series import Columns, Steps, UnsupportedError
@@ -22,14 +22,14 @@ from ltlc.runtime.slice_keys import Cut, Id, Key
 class Messages:
     """Those with one of `ids`, a step of its slice each, but for the `invalid` ones; `without_id` counts the others.
 
-    `atoms` says where each holds, `latest` has the samples of the readings.
+    Their `letters` say which atoms hold, `latest` has the samples of the readings.
     """
 
     cut: Cut
     ids: Array
     without_id: int
     steps: Steps
-    atoms: Sequence[Mask]
+    letters: Bytes
     invalid: Mask | None
     latest: Mapping[str, Array]
 
@@ -64,8 +64,16 @@ def messages_of(block: Block, cut: Cut, key: Key, read: Sequence[str], of: Prepa
     if any(len(of) < len(ids) for name, of in columns.series.items() if cut.is_own(name)):
         raise UnsupportedError("a signal of slices without a value at some messages")
     prepare(of.compare, steps)
-    atoms = [unpack(bits_of(atom, steps), len(ids)) for atom in of.atoms] if len(ids) else []
-    return Messages(cut, ids, len(rows) - len(ids), steps, atoms, not_numbers(of.guards, steps), latest)
+    letters = _letters(of, steps)
+    return Messages(cut, ids, len(rows) - len(ids), steps, letters, not_numbers(of.guards, steps), latest)
+
+
+def _letters(of: Prepared, steps: Steps) -> Bytes:
+    """Of each of `steps` its letter: bit i says whether atom i holds."""
+    letters = np.zeros(len(steps), np.uint8)
+    for number, atom in enumerate(of.atoms if len(steps) else ()):
+        letters |= unpack(bits_of(atom, steps), len(steps)).view(np.uint8) << np.uint8(number)
+    return letters
 
 
 def _rows(block: Block, topic: str, read: Sequence[str]) -> Places:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import partial
+from functools import cached_property, partial
 from itertools import chain
 
 import numpy as np
@@ -43,6 +43,11 @@ class Part:
     followed: Followed
     dues: Sequence[Places]
     are_taken: Mask
+
+    @cached_property
+    def going(self) -> Places:
+        """Those of them that nothing decides, by place."""
+        return np.flatnonzero(self.are_taken & (self.followed.groups.deciding < 0))
 
 
 @dataclass
@@ -108,22 +113,22 @@ class BySlices:
         ids.messages += len(messages)
         ids.without_id += messages.without_id
         numbers = known.number(messages.ids)
-        was_decided = known.is_decided.take(numbers)
-        undecided = np.flatnonzero(~was_decided) if was_decided.any() else None
+        undecided = np.flatnonzero(~known.is_decided.take(numbers)) if known.is_decided.any() else None
         runs = valid = runs_of(numbers, undecided)
         known.begin(runs.numbers, self._count + runs.order.take(runs.firsts))
         if messages.invalid is not None:
-            valid = runs_of(numbers, np.flatnonzero(~was_decided & ~messages.invalid))
+            is_valid = ~messages.invalid
+            valid = runs_of(numbers, np.flatnonzero(is_valid) if undecided is None else undecided[is_valid[undecided]])
         taken = self._follow(messages, valid, int(block.times[-1]))
         for part in taken.parts:
             self._advance(messages, part)
-        self._number(taken, numbers, was_decided)
+        self._number(taken, runs)
         for part in taken.parts:
             self._date(taken, part)
             self._decide(taken, part)
         for number, those in taken.alone.items():
             self._take_alone(taken, number, those)
-        known.see(runs.numbers, messages.latest, runs.lasts())
+        known.see(runs.numbers, messages.latest, runs.lasts)
         self._conclude(taken)
         self._count += len(messages)
 
@@ -131,7 +136,7 @@ class BySlices:
         """Follow `runs` up to where a clock comes due; from there on, slices alone."""
         known, parts, alone = self._known, [], {}
         if len(runs.numbers):
-            followed = follow(self._tables, runs, messages.atoms, known.states[runs.numbers])
+            followed = follow(self._tables, runs, messages.letters, known.states[runs.numbers])
             dues, first = followed.dues(messages.times, [due[runs.numbers] for due in known.dues], until)
             parts.append(Part(followed, dues, first == NEVER))
             late = np.flatnonzero(first < NEVER)
@@ -142,46 +147,39 @@ class BySlices:
                 alone[int(runs.numbers[at])] = run[counts[place] :]
             if counts.any():
                 before = runs.taken(late[counts > 0], counts[counts > 0])
-                followed = follow(self._tables, before, messages.atoms, known.states[before.numbers])
+                followed = follow(self._tables, before, messages.letters, known.states[before.numbers])
                 dues, _ = followed.dues(messages.times, [due[before.numbers] for due in known.dues], until)
                 parts.append(Part(followed, dues, np.ones(len(before.numbers), np.bool_)))
-        silent = np.setdiff1d(np.flatnonzero(known.next < until), runs.numbers, assume_unique=True)
-        alone |= dict.fromkeys(silent.tolist(), runs.order[:0])
+        if known.dues:
+            silent = np.setdiff1d(np.flatnonzero(known.next < until), runs.numbers, assume_unique=True)
+            alone |= dict.fromkeys(silent.tolist(), runs.order[:0])
         return Taken(messages, until, parts, alone, self._owed)
 
     def _advance(self, messages: Messages, part: Part) -> None:
         """Put slices into the states after the messages that they took, and before that which decides them."""
         known, groups, runs = self._known, part.followed.groups, part.followed.runs
-        outputs, numbers = self._tables.machine.outputs, runs.numbers[part.are_taken]
-        going = part.are_taken & (groups.deciding < 0)
-        self._owed -= int(np.count_nonzero(outputs[known.states[numbers]] == OWED))
-        self._owed += int(np.count_nonzero(outputs[groups.lasts[going]] == OWED))
-        known.states[runs.numbers[going]] = groups.lasts[going]
+        numbers, states = runs.numbers[part.are_taken], groups.lasts.take(part.going)
+        is_owed = self._tables.machine.outputs == OWED
+        self._owed -= int(np.count_nonzero(is_owed.take(known.states.take(numbers))))
+        self._owed += int(np.count_nonzero(is_owed.take(states)))
+        known.states[runs.numbers.take(part.going)] = states
         if not known.dues:
             return
         for due, after in zip(known.dues, part.dues, strict=True):
             due[numbers] = after[part.are_taken]
         known.next[numbers] = np.minimum.reduce([due[numbers] for due in known.dues])
-        known.see(numbers, messages.latest, runs.lasts()[part.are_taken])
+        known.see(numbers, messages.latest, runs.lasts[part.are_taken])
 
-    def _number(self, taken: Taken, numbers: Places, was_decided: Mask) -> None:
-        """Count the messages that are steps, and those that are none."""
+    def _number(self, taken: Taken, runs: Runs) -> None:
+        """Count the messages that are steps, and those that are none, of the `runs` that were not decided before."""
         messages, track = taken.messages, self.slices.track
-        lasts = np.full(len(self._known.states), len(messages))
-        for part in taken.parts:
-            at, steps, _ = part.followed.decisions
-            is_taken = part.are_taken[at]
-            runs, at, steps = part.followed.runs, at[is_taken], steps[is_taken]
-            lasts[runs.numbers[at]] = runs.message(at, steps)
-        for number, those in taken.alone.items():
-            tried, steps_ = self._known.slice(number), np.arange(len(messages))
-            count = take_alone(self.slices, tried, messages, those, steps_, taken.until).count
-            if count < len(those):
-                lasts[number] = those[count] - 1
-        if messages.invalid is None and not was_decided.any() and (lasts == len(messages)).all():
+        late = self._late(taken, runs)
+        if messages.invalid is None and len(runs.order) == len(messages) and not len(late):
             taken.steps = track.steps + np.arange(len(messages) + 1)
         else:
-            is_counted = ~was_decided & (np.arange(len(messages)) <= lasts.take(numbers))
+            is_counted = np.zeros(len(messages), np.bool_)
+            is_counted[runs.order] = True
+            is_counted[late] = False
             if messages.invalid is not None:
                 counted = np.flatnonzero(~(is_counted & messages.invalid))
                 count_invalid(track, Stretch(messages.steps, counted, ()))
@@ -189,18 +187,36 @@ class BySlices:
             taken.steps = track.steps + np.concatenate(([0], is_counted.cumsum()))
         track.steps = int(taken.steps[-1])
 
+    def _late(self, taken: Taken, runs: Runs) -> Places:
+        """The messages of `runs` after those that decide them."""
+        lasts, numbers = np.full(len(runs.numbers), len(taken.messages)), np.arange(len(taken.messages))
+        for part in taken.parts:
+            at, steps, _ = part.followed.decisions
+            at, steps = at[part.are_taken[at]], steps[part.are_taken[at]]
+            of = part.followed.runs
+            lasts[runs.numbers.searchsorted(of.numbers[at])] = of.message(at, steps)
+        for number, those in taken.alone.items():
+            tried = self._known.slice(number)
+            count = take_alone(self.slices, tried, taken.messages, those, numbers, taken.until).count
+            if count < len(those):
+                lasts[runs.numbers.searchsorted(number)] = those[count] - 1
+        if (lasts == len(taken.messages)).all():
+            return runs.order[:0]
+        return runs.order[runs.order > lasts.repeat(runs.lengths)]
+
     def _date(self, taken: Taken, part: Part) -> None:
         """Note when what became of slices that are not decided did."""
         known, machine, groups, runs = self._known, self._tables.machine, part.followed.groups, part.followed.runs
-        is_going = part.are_taken & (groups.deciding < 0)
-        known.stepped[runs.numbers[is_going]] = taken.steps[runs.lasts()[is_going]]
-        changed = groups.last(self._tables.changes, is_going & (machine.outputs[groups.lasts] == OWED))
+        known.stepped[runs.numbers.take(part.going)] = taken.steps.take(runs.lasts.take(part.going))
+        is_going = np.zeros(len(runs.numbers), np.bool_)
+        is_going[part.going] = True
+        changed = groups.last(self._tables.changes, is_going & (machine.outputs == OWED).take(groups.lasts))
         at = np.flatnonzero(changed >= 0)
         since, numbers = runs.message(at, changed[at]), runs.numbers[at]
         known.owed[numbers], known.owed_at[numbers] = taken.steps[since], taken.messages.times[since]
         taken.opened.append(since)
         if self._tables.returns is not None:
-            returned = groups.last(self._tables.returns, is_going & ~machine.as_new[groups.lasts])
+            returned = groups.last(self._tables.returns, is_going & ~machine.as_new.take(groups.lasts))
             at = np.flatnonzero(returned >= 0)
             known.begins[runs.numbers[at]] = self._count + runs.message(at, returned[at])
 
@@ -294,10 +310,11 @@ class BySlices:
     def _changes(self, taken: Taken, until: int, part: Part) -> Iterator[tuple[Places, Places, Places]]:
         """Where in slices an obligation is open from a step on, or no more, and when, up to some place."""
         runs, outputs = part.followed.runs, self._tables.machine.outputs
-        for places, steps, before, after in part.followed.groups.changes():
+        begin_before = part.are_taken & (2 * runs.order.take(runs.firsts) < until)
+        for places, steps, before, after in part.followed.groups.changes(begin_before):
             change = (outputs[after] == OWED).astype(np.int64) - (outputs[before] == OWED)
             messages = runs.message(places, steps)
-            at = np.flatnonzero((change != 0) & part.are_taken[places] & (2 * messages < until))
+            at = np.flatnonzero((change != 0) & (2 * messages < until))
             yield 2 * messages[at] + 1, taken.messages.times[messages[at]], change[at]
 
     def settle(self) -> None:
