@@ -30,12 +30,15 @@ HEAD = """
 decl id   /track sensor_msgs/JoyFeedback.id
 decl kind /track sensor_msgs/JoyFeedback.type
 decl dist /track sensor_msgs/JoyFeedback.intensity
+decl v    /odom std_msgs/Float64.data
 """
 TEXTS = (
     "always (kind == 1 implies eventually kind == 2)",
     "always (kind == 1 implies eventually kind == 2 within 60 s)",
     "always age(dist) <= 300 s",
 )
+WITH_OTHERS = ("never (kind == 1 and v > 4)", "always (kind == 1 implies eventually v < 1)")
+"""What is read on `/odom` is in no message with an id: each of these is a step of all ids."""
 NEW = ("always (new kind implies eventually kind == 2 within 60 s)", "each new kind: eventually kind == 2 within 60 s")
 """The same property, said of all messages and of each."""
 OPEN = 20_000
@@ -95,6 +98,15 @@ def blocks_of(given: Sequence[Message], size: int) -> Iterator[Block]:
         yield Block(times[part], {name: Samples(rows, column[part]) for name, column in columns.items()}, {})
 
 
+def with_others(block: Block, changes: int) -> Block:
+    """The rows of a block, so many of which are messages on `/odom` instead, each with another value than the last."""
+    is_other = np.zeros(len(block.times), np.bool_)
+    is_other[:: len(is_other) // changes] = True
+    others, rows = np.flatnonzero(is_other), np.flatnonzero(~is_other)
+    samples = {name: Samples(rows, np.asarray(of.values)[rows]) for name, of in block.samples.items()}
+    return Block(block.times, {**samples, "v": Samples(others, np.where(np.arange(len(others)) % 2, 3.0, 0.5))}, {})
+
+
 def by_columns(plan: Plan, prepared: Sequence[Prepared], blocks: Sequence[Block], rounds: int) -> float:
     """CPU time a message."""
     best = float("inf")
@@ -138,6 +150,12 @@ def main() -> None:
             print(f"{ids:7,} ids, {text}")
             for name, (whole, sliced) in figures.items():
                 print(f"    {name}: {whole:,.0f} ns without each, {sliced:,.0f} with it", flush=True)
+    [whole] = blocks_of(messages(1_000, options.columns), options.columns)
+    mixed = with_others(whole, max(1, options.columns // 1000))
+    parts = [mixed.part(first, first + ROWS) for first in range(0, len(mixed.times), ROWS)]
+    for text in WITH_OTHERS:
+        found = by_columns(*plan_of(f"each g of id: {text}"), parts, options.rounds)
+        print(f"1,000 ids, one row of 1,000 on /odom, {text}: {found:,.0f} ns a row by columns", flush=True)
     for period in (1, 10, 100):
         given = answered(period, options.messages // 5)
         whole, each = beside([plan_of(text)[0] for text in NEW], given, options.rounds)

@@ -71,6 +71,9 @@ ONE_TOPIC = (
     "always (id == g implies v > @{v, -1} - 3)",
     "never (g == 3 and v > 2)",
     "(eventually kind == 2) or always stop",
+    "never @{dist, when new dist} > 3",
+    "never @{dist, when kind == 1} > 3",
+    "always (kind == 1 implies @{v, when new stop} < 3)",
 )
 """Properties of `each g of id`: one topic is sliced."""
 

@@ -18,6 +18,7 @@ from ltlc.frontend.language import load_text
 from ltlc.inputs.recordings.blocks import Block, blocks_of
 from ltlc.inputs.recordings.rows import Column
 from ltlc.inputs.recordings.rows import Row as Rows
+from ltlc.monitoring.columns import elements
 from ltlc.monitoring.columns.ids import Numbers, runs_of
 from ltlc.monitoring.columns.prepared import prepare_all
 from ltlc.monitoring.columns.session import ByBlocks
@@ -58,7 +59,19 @@ def both(text: str, rows: Sequence[Row], chance: random.Random, *, reads: bool =
     return reference.session, fast
 
 
-CASES = [*((text, "id") for text in ONE_TOPIC), *((text, "id, fid") for text in TWO_TOPICS)]
+WITH_OTHERS = (
+    "always (kind == 1 implies eventually v < 1)",
+    "never (kind == 1 and v > 2)",
+    "always (kind == 1 implies eventually stop within 20 ns)",
+    "always (new stop implies eventually kind == 2 within 30 ns)",
+    "always (v > 1 implies eventually kind == 1 within 12 ns)",
+    "always (kind == 2 implies once v > 2 within 30 ns)",
+    "until stop, never kind == 2",
+    "always (kind == 1 implies eventually (stop and v > 1))",
+)
+"""Properties of what is in messages with an id, and of what is in others."""
+
+CASES = [*((text, "id") for text in (*ONE_TOPIC, *WITH_OTHERS)), *((text, "id, fid") for text in TWO_TOPICS)]
 
 
 @pytest.mark.parametrize(("text", "keys"), CASES)
@@ -105,8 +118,8 @@ def test_messages_of_one_id_stand_together_in_their_order(most: int) -> None:
 
 def test_what_is_not_sliced_by_columns_is_named_by_timing() -> None:
     chance = random.Random(0)
-    _, fast = both("p: each g of id: never (dist < 1 and v > 2)", random_rows(chance, 20, [1]), chance)
-    assert set(fast.ways[0].because) == {"topics that are not sliced"}
+    _, fast = both("p: each g of id: never dist < v", random_rows(chance, 20, [1]), chance)
+    assert set(fast.ways[0].because) == {"conditions on messages with an id and on others"}
 
 
 @pytest.mark.parametrize("text", ["never kind == 2", "always (kind == 1 implies eventually kind == 2 within 9 ns)"])
@@ -118,8 +131,37 @@ def test_a_session_that_was_read_goes_on(text: str) -> None:
         assert state(fast.session) == state(reference)
 
 
-@pytest.mark.parametrize("text", ["never kind == 2", "always (kind == 1 implies eventually kind == 2 within 9 ns)"])
-def test_most_that_is_said_of_one_topic_goes_by_columns(text: str) -> None:
+def measured(rows: Sequence[Row]) -> list[Row]:
+    """Those without NaN."""
+    return [row for row in rows if not any(value != value for value in row[2].values())]
+
+
+ONE = ("never kind == 2", "always (kind == 1 implies eventually kind == 2 within 9 ns)")
+
+
+@pytest.mark.parametrize("text", [*ONE, *WITH_OTHERS])
+def test_most_that_is_said_of_what_messages_have_goes_by_columns(text: str) -> None:
     chance = random.Random(0)
-    _, fast = both(f"p: each g of id: {text}", random_rows(chance, 60, [1, 2, 3]), chance)
+    rows = measured(random_rows(chance, 60, [1, 2, 3]))
+    _, fast = both(f"p: each g of id: {text}", rows, chance)
     assert not fast.ways[0].because
+
+
+@pytest.mark.parametrize(
+    "text", ["always (kind == 1 implies age(dist) <= 30 ns)", "never (age(dist) > 9 ns and kind > 1)"]
+)
+def test_a_clock_step_of_a_slice_judges_the_values_of_its_last_step(text: str) -> None:
+    chance = random.Random(text)
+    for _ in range(12):
+        rows = random_rows(chance, 60, [1, 2, 3])
+        reference, fast = both(f"p: each g of id: {text}", rows, chance)
+        assert state(fast.session) == state(reference)
+
+
+def test_many_slices_take_what_they_share_in_parts(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(elements, "MOST", 20)
+    chance = random.Random(2)
+    for text in WITH_OTHERS:
+        rows = measured(random_rows(chance, 120, range(8)))
+        reference, fast = both(f"p: each g of id: {text}", rows, chance)
+        assert state(fast.session) == state(reference)

@@ -141,7 +141,13 @@ class Slices(ToldSlices):
     def _share(self, time: int, part: Part, given: Sequence[Value]) -> None:
         """Take what all slices share."""
         self._last_heard |= dict.fromkeys(part.aged, time)
+        self._hear(part.news)
         part.update.take(time, given)
+
+    def _hear(self, news: tuple[int, ...]) -> None:
+        """What stands at these places is new: values may be latched because of that."""
+        if self.cut.sampler.heard is not news:
+            self.cut.sampler.hear(news)
 
     def _miss(self, time: int, key: Key, name: str, here: set[Id | None]) -> None:
         """A message came with the ids that are `here`: all others are gone."""
@@ -210,6 +216,7 @@ class Slices(ToldSlices):
         part = self.cut.own_part(self.cut.row(names, frozenset({topic})), (topic,))
         one = self._born(time, id_)
         self._load(one)
+        self._hear(part.news)
         part.update.take(time, values)
         one.track.judged_on = self.cut.window.values()
         return one
@@ -227,6 +234,7 @@ class Slices(ToldSlices):
         if part.aged:
             track.hear(time, part.aged)
         self._load(one)
+        self._hear(part.news)
         part.update.take(time, given)
         if part.is_step:
             self._step(time, one, part.news)
@@ -254,8 +262,7 @@ class Slices(ToldSlices):
 
     def _step(self, time: int, one: Slice, news: tuple[int, ...]) -> None:
         """A slice of which the samples are loaded takes a step, if all has a value."""
-        if self.cut.sampler.heard is not news:
-            self.cut.sampler.hear(news)
+        self._hear(news)
         values, track = self.cut.window.values(), one.track
         if not one.is_full:
             if None in values and not track.property.is_ready(values):

@@ -112,14 +112,17 @@ class TickedSlices(Slices):
         self._quiet += 1
         self.session.steps += 1
         names, given = tuple(self._latest), tuple(self._latest.values())
+        self._hear(cut.sampler.news(self._news))
         cut.tick_part(names, is_own=False).update.take(time, given)
         self._open_by_news()
         for one in self._going_on():
             self._load(one)
             latest = one.latest or {}
             part = cut.tick_part((*latest, *names), is_own=True)
+            news = cut.sampler.news(self._news | one.heard)
+            self._hear(news)
             part.update.take(time, (*latest.values(), *given))
-            self._step(time, one, cut.sampler.news(self._news | one.heard))
+            self._step(time, one, news)
             one.heard = NOTHING_HEARD
             if one.track.is_renewed:
                 one.track.renew(time)

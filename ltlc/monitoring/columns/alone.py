@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from ltlc.inputs.recordings.blocks import Places
-from ltlc.monitoring.columns.messages import Messages
+from ltlc.monitoring.columns.elements import Elements
 from ltlc.runtime.properties import Change
 from ltlc.runtime.slice_ids import Slice
 from ltlc.runtime.slice_steps import Slices
@@ -25,7 +25,7 @@ class Alone:
 
 
 def take_alone(
-    slices: Slices, one: Slice, messages: Messages, those: Places, steps: Places, until: Nanoseconds
+    slices: Slices, one: Slice, messages: Elements, those: Places, steps: Places, until: Nanoseconds
 ) -> Alone:
     """Have a slice take `those` messages, whose steps have the numbers in `steps`, and time, until it is decided."""
     track, found = one.track, Alone()
@@ -34,9 +34,10 @@ def take_alone(
         if _is_decided(found, one, messages, time):
             return found
         was_new = slices.is_as_new(one)
-        track.hear(time, slices.cut.own_ages)
+        if messages.is_own(message):
+            track.hear(time, slices.cut.own_ages)
         track.steps = int(steps[message])
-        previous = track.step(time, messages.values(message, one.id))
+        previous = track.step(time, messages.values(slices.cut, message, one))
         changes = [] if previous is None else [track.change(previous, time)]
         changes += track.renew(time) if track.is_renewed else []
         found.changes += [((2 * message + 1, time), each) for each in changes]
@@ -49,7 +50,7 @@ def take_alone(
     return found
 
 
-def _is_decided(found: Alone, one: Slice, messages: Messages, time: Nanoseconds) -> bool:
+def _is_decided(found: Alone, one: Slice, messages: Elements, time: Nanoseconds) -> bool:
     """Let a slice take its clock steps up to and including `time`; whether that decides it."""
     for change in one.track.hold(time):
         now = change.moment.time

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from ltlc.inputs.recordings.blocks import Places
-from ltlc.monitoring.columns.bits import Mask
+from ltlc.monitoring.columns.bits import Bytes, Mask
 from ltlc.monitoring.columns.follow import groups_of
 from ltlc.monitoring.columns.groups import Groups, Passed
 from ltlc.monitoring.columns.ids import Runs
@@ -78,8 +78,9 @@ def _dues(runs: Places, set_at: Places, dues: Places, before: Places, ends: Plac
     return after, first
 
 
-def follow(tables: Tables, runs: Runs, atoms: Sequence[Mask], before: States) -> Followed:
-    """Take the messages of `runs`, of which there is one, at which these `atoms` hold, from the states `before`."""
-    order, sizes = runs.padded(), (runs.lengths + 7) >> 3
-    keys = tables.keys([np.packbits(mask.take(order), bitorder="little") for mask in atoms])
+def follow(tables: Tables, runs: Runs, letters: Bytes, before: States) -> Followed:
+    """Take the messages of `runs`, of which there is one, that have these `letters`, from the states `before`."""
+    padded, sizes = runs.padded(letters), (runs.lengths + 7) >> 3
+    bits = (padded & np.uint8(1 << atom) for atom in range(tables.machine.atoms))
+    keys = tables.keys([np.packbits(each, bitorder="little") for each in bits])
     return Followed(runs, groups_of(tables, keys, None, sizes.cumsum() - sizes, before))

@@ -74,11 +74,18 @@ class Groups:
     def last(self, happens: Happens, of: Mask) -> Places:
         """The last step of each of these, before a group that decides it, at which it happens; -1 if there is none."""
         numbers = np.flatnonzero(of)
-        groups = self._last_groups(happens.counts, numbers)
-        is_found = groups >= 0
-        numbers, groups = numbers[is_found], groups[is_found]
-        found = np.full(len(of), -1)
-        found[numbers] = self._first_steps(groups, numbers) + happens.lasts.take(self.index[groups]) - 1
+        if len(numbers) > MANY:
+            groups = np.flatnonzero(happens.counts.take(self.index))
+            numbers = self.starts.searchsorted(groups, "right") - 1
+            is_taken = of[numbers] & (groups < self.ends[numbers])
+        else:
+            limits = zip(self.starts[numbers].tolist(), self.ends[numbers].tolist(), strict=True)
+            groups = np.array([self._last_group(happens.counts, *each) for each in limits], np.int64)
+            is_taken = groups >= 0
+        groups, numbers, found = groups[is_taken], numbers[is_taken], np.full(len(of), -1)
+        found[numbers] = (
+            self._first_steps(groups, numbers) + happens.lasts.take(self.index[groups]) - 1
+        )  # the last wins
         return found
 
     def decisions(self) -> tuple[Places, Places, Places]:
@@ -89,10 +96,11 @@ class Groups:
         before = [states < self.tables.machine.first_final for states, _ in paths]
         return numbers, self._first_steps(groups, numbers) + np.sum(before, 0) - 1, paths[-1][1]
 
-    def changes(self) -> Iterator[tuple[Places, Places, Places, Places]]:
-        """Where the verdict changes: of which of them, at which step, and from which state to which."""
-        groups = np.flatnonzero(self.tables.changes.counts.take(self.index))
+    def changes(self, of: Mask) -> Iterator[tuple[Places, Places, Places, Places]]:
+        """Where the verdict changes: of which of these, at which step, and from which state to which."""
+        groups = np.flatnonzero(self.tables.changes.counts.take(self.index)) if of.any() else self.starts[:0]
         numbers = self.starts.searchsorted(groups, "right") - 1
+        groups, numbers = groups[of[numbers]], numbers[of[numbers]]
         first, outputs = self._first_steps(groups, numbers), self.tables.machine.outputs
         for step, (before, after) in enumerate(self._paths(groups)):
             at = np.flatnonzero(outputs[before] != outputs[after])
@@ -140,16 +148,6 @@ class Groups:
         sums = np.add.reduceat(found, limits[: len(limits) - (limits[-1] == len(found))], dtype=np.int64)[::2]
         return np.where(self.ends > self.starts, sums, 0)
 
-    def _last_groups(self, table: NDArray[np.uint8], numbers: Places) -> Places:
-        """The last group of each property with one of these numbers that has something in `table`; -1: none."""
-        starts, ends = self.starts[numbers], self.ends[numbers]
-        if len(numbers) > MANY:
-            hits = np.concatenate(([-1], np.flatnonzero(table.take(self.index))))
-            lasts = hits[hits.searchsorted(ends) - 1]
-            return np.where(lasts >= starts, lasts, -1)
-        limits = zip(starts.tolist(), ends.tolist(), strict=True)
-        return np.array([self._last_group(table, *each) for each in limits], np.int64)
-
     def _last_group(self, table: NDArray[np.uint8], first: int, end: int) -> int:
         """The last of the groups from `first` to before `end` that has something in `table`; -1 if there is none."""
         size = PART
@@ -163,7 +161,9 @@ class Groups:
 
     def _first_steps(self, groups: Places, numbers: Places) -> Places:
         """The first steps of groups of the properties with these numbers."""
-        bytes_, parts = np.divmod(self.at[groups], 8 // self.tables.size)
+        at, size = self.at[groups], self.tables.size
+        shift = (8 // size).bit_length() - 1
+        bytes_ = at >> shift
         places = bytes_ if self.places is None else self.places[bytes_]
-        steps: Places = (places - self.firsts[numbers]) * 8 + parts * self.tables.size
+        steps: Places = (places - self.firsts[numbers]) * 8 + (at & (1 << shift) - 1) * size
         return steps

@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import islice
 
 import numpy as np
 
 from ltlc.inputs.recordings.blocks import Array, Places
+from ltlc.monitoring.columns.bits import Bytes
 from ltlc.runtime.slice_keys import Id, id_of
 
 SPREAD, FEW = 4, 1000
 """Whole ids are looked up in a table of at most so many places for each message, and of so many more."""
-
-DIGIT = 16
-"""Numpy sorts numbers of so many bits by counting them."""
 
 
 class Numbers:
@@ -43,7 +42,8 @@ class Numbers:
         if self._by_id is None:
             whole = _whole(column)
             if whole is not None and self._has_room(whole):
-                return self._looked_up(whole - self._least)
+                whole -= self._least
+                return self._looked_up(whole)
             self._listed = self._whole.tolist()
             self._by_id = {id_: number for number, id_ in enumerate(self._listed)}
         known = self._by_id
@@ -71,7 +71,7 @@ class Numbers:
 
     def _looked_up(self, places: Places) -> Places:
         found = self._table.take(places)
-        if (found < 0).any():
+        if len(found) and found.min() < 0:
             is_here = np.zeros(len(self._table), np.bool_)
             is_here[places] = True
             new = np.flatnonzero(is_here & (self._table < 0))
@@ -82,15 +82,15 @@ class Numbers:
 
 
 def _whole(column: Array) -> Places | None:
-    """Ids as integers of 64 bits, if they are."""
-    if column.dtype.kind not in "iuf":
+    """A copy of ids as integers of 64 bits, if they are."""
+    if column.dtype.kind not in "iuf" or column.max(initial=0) >= 1 << 63:
         return None
     with np.errstate(invalid="ignore"):
         whole = column.astype(np.int64)
-    return whole if (whole == column).all() and (whole >= 0).all() == (column >= 0).all() else None
+    return whole if (whole == column).all() else None
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Runs:
     """The messages of slices, those of one after the other: they are in `order`.
 
@@ -118,33 +118,29 @@ class Runs:
         """The messages at these places in these runs."""
         return self.order.take(self.firsts.take(runs) + steps)
 
+    @cached_property
     def lasts(self) -> Places:
         """The last message of each."""
         return self.order.take(self.firsts + self.lengths - 1)
 
-    def padded(self) -> Places:
-        """The messages of each up to a multiple of eight: the last one is repeated."""
+    def padded(self, letters: Bytes) -> Bytes:
+        """The `letters` of the messages, those of each up to a multiple of eight: the last one is repeated."""
         counts = np.ones(len(self.order), np.int64)
         counts[self.firsts + self.lengths - 1] += -self.lengths % 8
-        return self.order.repeat(counts)
+        return letters.take(self.order).repeat(counts)
 
 
 def runs_of(numbers: Places, messages: Places | None) -> Runs:
     """Those of `messages`, ascending, None for all, in which the ids have these `numbers`."""
     given = numbers if messages is None else numbers.take(messages)
-    order = _order(given)
-    counts = np.bincount(given)
-    of = np.flatnonzero(counts)
-    lengths = counts[of]
-    return Runs(of, order if messages is None else messages.take(order), lengths.cumsum() - lengths, lengths)
-
-
-def _order(numbers: Places) -> Places:
-    """The stable order of `numbers`, none of which is negative: by their digits, the last first."""
-    order: Places = np.argsort(numbers.astype(np.uint16), kind="stable")
-    most, shift = int(numbers.max(initial=0)) >> DIGIT, DIGIT
-    while most:
-        digits = (numbers >> shift).astype(np.uint8 if most < 1 << 8 else np.uint16)
-        order = order.take(np.argsort(digits.take(order), kind="stable"))
-        most, shift = most >> DIGIT, shift + DIGIT
-    return order
+    bits = len(given).bit_length()
+    order = given << bits
+    order |= np.arange(len(given))
+    order.sort()
+    of = order >> bits
+    order &= (1 << bits) - 1
+    is_first = np.ones(len(of), np.bool_)
+    np.not_equal(of[1:], of[:-1], out=is_first[1:])
+    firsts = np.flatnonzero(is_first)
+    lengths = np.diff(firsts, append=len(of))
+    return Runs(of.take(firsts), order if messages is None else messages.take(order), firsts, lengths)

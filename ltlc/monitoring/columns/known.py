@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from ltlc.inputs.recordings.blocks import Array, Places
-from ltlc.monitoring.columns.bits import Mask
+from ltlc.monitoring.columns.bits import Bytes, Mask
 from ltlc.monitoring.columns.ids import Numbers
 from ltlc.monitoring.columns.machine import Machine
 from ltlc.monitoring.columns.prepared import Prepared
@@ -31,7 +31,7 @@ class Known:
     stepped: the number of its last step
     owed, owed_at: the step at which its verdict changed last, and the time, if an obligation is open
     next: when a clock comes due next; `dues` are when each does
-    latest: by reading, the value in its last message
+    latest, letters: by reading, the value in its last message with its id; and what held of that since
     """
 
     def __init__(self, slices: Slices, of: Prepared, machine: Machine) -> None:
@@ -42,6 +42,7 @@ class Known:
         self.begins, self.stepped, self.owed, self.owed_at, self.next = (np.empty(0, np.int64) for _ in range(5))
         self.dues: list[Places] = [np.empty(0, np.int64) for _ in machine.clocks]
         self.latest: dict[str, Array] = {}
+        self.letters: Bytes = np.empty(0, np.uint8)
 
     def require(self, latest: Mapping[str, Array]) -> None:
         """Raise UnsupportedError if there is no place for such values."""
@@ -77,6 +78,8 @@ class Known:
         track, state = one.track, int(self.states[number])
         if not state:
             return one
+        if self.dues:  # Clock steps judge the values of the last step, which a monitor keeps for itself.
+            track.monitor.step(time, *track.judged_on)
         track.monitor.state, _ = self._machine.states[state]
         track.monitor.verdict = track.verdict = self._of.states[track.monitor.state].verdict
         track.steps = int(self.stepped[number]) + 1
@@ -98,6 +101,11 @@ class Known:
             due[number] = getattr(track.monitor, name)
         self.next[number] = track.monitor.due
 
+    def going(self) -> Places:
+        """The slices that have begun and are not decided, in the order in which they began."""
+        found = np.flatnonzero(~self.is_decided & (self.begins < NEVER))
+        return found[np.argsort(self.begins[found], kind="stable")]
+
     def kept(self) -> Places:
         """The slices that are kept, in the order in which they are."""
         count = len(self.numbers)
@@ -110,7 +118,7 @@ class Known:
         self.states, self.is_decided = _longer(self.states, count, 0), _longer(self.is_decided, count, False)
         self.begins, self.next = _longer(self.begins, count, NEVER), _longer(self.next, count, NEVER)
         self.stepped, self.owed = _longer(self.stepped, count, 0), _longer(self.owed, count, 0)
-        self.owed_at = _longer(self.owed_at, count, 0)
+        self.owed_at, self.letters = _longer(self.owed_at, count, 0), _longer(self.letters, count, 0)
         self.dues = [_longer(due, count, NEVER) for due in self.dues]
         self.latest = {name: _longer(values, count, values.dtype.type()) for name, values in self.latest.items()}
 

@@ -2,73 +2,80 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from ltlc.inputs.recordings.blocks import Array, Block, Places, Ragged, Samples
 from ltlc.monitoring.columns.atoms import bits_of, prepare
-from ltlc.monitoring.columns.bits import Mask, union, unpack
+from ltlc.monitoring.columns.bits import Bytes, Mask, union, unpack
 from ltlc.monitoring.columns.derived import derive
 from ltlc.monitoring.columns.prepared import Prepared
 from ltlc.monitoring.columns.series import Columns, Steps, UnsupportedError
 from ltlc.monitoring.columns.values import not_numbers
-from ltlc.runtime.sampling import Derived, Reading, Value
-from ltlc.runtime.slice_keys import Cut, Id, Key
+from ltlc.program.expressions import reads_of
+from ltlc.runtime.sampling import Derived, Reading
+from ltlc.runtime.slice_keys import Cut, Key
 
 
 @dataclass(frozen=True)
 class Messages:
-    """Those with one of `ids`, a step of its slice each, but for the `invalid` ones; `without_id` counts the others.
+    """Those with one of `ids`, in these `rows`; `without_id` counts the others. None of the `invalid` ones is a step.
 
-    `atoms` says where each holds, `latest` has the samples of the readings.
+    Their `letters` say which of the atoms hold that read nothing else, `latest` has the samples of the readings.
     """
 
-    cut: Cut
     ids: Array
+    rows: Places
     without_id: int
     steps: Steps
-    atoms: Sequence[Mask]
+    letters: Bytes
     invalid: Mask | None
     latest: Mapping[str, Array]
 
     def __len__(self) -> int:
         return len(self.ids)
 
-    @property
-    def times(self) -> Places:
-        """The time of each."""
-        return self.steps.columns.times
 
-    def values(self, message: int, id_: Id) -> list[Value]:
-        """What the property reads at one of them, which has this id."""
-        cut = self.cut
-        return [id_ if i.signal == cut.variable else self.steps.value(i, message) for i in cut.window.inputs]
+def messages_of(
+    block: Block, cut: Cut, key: Key, read: Sequence[str], of: Prepared, others: Collection[int]
+) -> Messages:
+    """Those in `block` on the topic of the `key`, of which the signals `read` are. Raises UnsupportedError.
 
-
-def messages_of(block: Block, cut: Cut, key: Key, read: Sequence[str], of: Prepared) -> Messages:
-    """Those in `block` on the topic of the `key`, of which the signals `read` are. Raises UnsupportedError."""
-    rows = _rows(block, key.topic, read)
+    The atoms with the numbers `others` read something else.
+    """
+    rows = rows_with(block, key.topic, read)
     ids, has_id = _ids(block, key.name, rows)
-    readings = [s for s in cut.signals if isinstance(s, Reading) and s.name != cut.variable]
-    latest = {reading.name: _values(block, reading.name, rows)[has_id] for reading in readings}
-    at = np.arange(len(ids))
+    signals = [s for s in cut.signals if cut.sampler.topics[s.name] <= {key.topic}]
+    readings = [s for s in signals if isinstance(s, Reading)]
+    latest = {s.name: _values(block, s.name, rows)[has_id] for s in readings if s.name != cut.variable}
+    at, without_id, rows = np.arange(len(ids)), len(rows) - len(ids), rows[has_id]
     samples = {name: Samples(at, values) for name, values in latest.items()}
-    if len(readings) < sum(isinstance(s, Reading) for s in cut.signals):
+    if len(latest) < len(readings):
         samples[cut.variable] = Samples(at, ids)
-    given = Block(block.times[rows[has_id]], samples, {key.topic: at})
-    columns = Columns(given, cut.sampler, [s for s in cut.signals if isinstance(s, Reading)], are_ticks=True)
-    derive(columns, [s for s in cut.signals if isinstance(s, Derived)], cut.sampler, of.definitions)
-    steps = columns.steps(cut.window.inputs, [key.topic])
+    columns = Columns(Block(block.times[rows], samples, {key.topic: at}), cut.sampler, readings, are_ticks=True)
+    derive(columns, [s for s in signals if isinstance(s, Derived)], cut.sampler, of.definitions)
+    names = {signal.name for signal in signals}
+    steps = columns.steps([i for i in cut.window.inputs if i.signal in names], [key.topic])
     if any(len(of) < len(ids) for name, of in columns.series.items() if cut.is_own(name)):
         raise UnsupportedError("a signal of slices without a value at some messages")
-    prepare(of.compare, steps)
-    atoms = [unpack(bits_of(atom, steps), len(ids)) for atom in of.atoms] if len(ids) else []
-    return Messages(cut, ids, len(rows) - len(ids), steps, atoms, not_numbers(of.guards, steps), latest)
+    letters = letters_of(of, steps, [n for n in range(len(of.atoms)) if n not in others])
+    guards = [guard for guard in of.guards if {r.signal for r in reads_of(guard)} <= names]
+    return Messages(ids, rows, without_id, steps, letters, not_numbers(guards, steps), latest)
 
 
-def _rows(block: Block, topic: str, read: Sequence[str]) -> Places:
+def letters_of(of: Prepared, steps: Steps, atoms: Collection[int]) -> Bytes:
+    """The letter of each of `steps`, as far as it is of `atoms`: bit i says whether atom i holds."""
+    names = {of.atoms[number].name for number in atoms}
+    prepare((each for each in of.compare if each[0] in names), steps)
+    letters = np.zeros(len(steps), np.uint8)
+    for number in atoms if len(steps) else ():
+        letters |= unpack(bits_of(of.atoms[number], steps), len(steps)).view(np.uint8) << np.uint8(number)
+    return letters
+
+
+def rows_with(block: Block, topic: str, read: Sequence[str]) -> Places:
     """The rows of `block` with a message on a topic, of which the signals `read` are."""
     parts = [block.samples[name].rows for name in read if name in block.samples]
     parts += [block.messages[topic]] if topic in block.messages else []

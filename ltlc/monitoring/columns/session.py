@@ -12,6 +12,7 @@ from ltlc.inputs.recordings.blocks import Block, Ragged
 from ltlc.monitoring.columns.atoms import Compared, prepare
 from ltlc.monitoring.columns.derived import derive
 from ltlc.monitoring.columns.leaps import walk_and_leap
+from ltlc.monitoring.columns.others import Others
 from ltlc.monitoring.columns.prepared import Prepared
 from ltlc.monitoring.columns.series import Columns, Rows, Steps, UnsupportedError
 from ltlc.monitoring.columns.slices import BySlices, refusal
@@ -117,10 +118,11 @@ class ByBlocks:
 
     def _slices(self, slices: Slices, of: Prepared) -> Way:
         """How a property is judged for each id."""
-        found: BySlices | str = self._why or refusal(self._session.plan, slices, of)
+        others = Others(self._session, slices.cut, of)
+        found: BySlices | str = self._why or refusal(self._session.plan, slices, of, others)
         if not found and of.tables is not None:
             [topic] = slices.cut.keys
-            found = BySlices(slices, of, of.tables, self._session.fields[topic])
+            found = BySlices(slices, of, of.tables, self._session.fields[topic], others)
         return Way(slices.track, self._session.sampler.window(()), of, None, -1, slices=found)
 
     def take(self, block: Block) -> None:

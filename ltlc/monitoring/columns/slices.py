@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import partial
+from functools import cached_property, partial
 from itertools import chain
 
 import numpy as np
@@ -17,10 +17,12 @@ import numpy as np
 from ltlc.inputs.recordings.blocks import Block, Places
 from ltlc.monitoring.columns.alone import Place, take_alone
 from ltlc.monitoring.columns.bits import Mask
+from ltlc.monitoring.columns.elements import Elements, elements
 from ltlc.monitoring.columns.following import Followed, follow
-from ltlc.monitoring.columns.ids import Runs, runs_of
+from ltlc.monitoring.columns.ids import Runs
 from ltlc.monitoring.columns.known import Known
-from ltlc.monitoring.columns.messages import Messages, messages_of
+from ltlc.monitoring.columns.messages import messages_of
+from ltlc.monitoring.columns.others import Others
 from ltlc.monitoring.columns.prepared import Prepared
 from ltlc.monitoring.columns.series import UnsupportedError
 from ltlc.monitoring.columns.tables import Tables
@@ -30,6 +32,7 @@ from ltlc.runtime.session import Plan
 from ltlc.runtime.slice_ids import Slice
 from ltlc.runtime.slice_steps import Slices
 from ltlc.runtime.times import NEVER
+from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.verdicts import Verdict
 
 OWED = list(Verdict).index(Verdict.PRESUMABLY_VIOLATED)
@@ -44,6 +47,11 @@ class Part:
     dues: Sequence[Places]
     are_taken: Mask
 
+    @cached_property
+    def going(self) -> Places:
+        """Those of them that nothing decides, by place."""
+        return np.flatnonzero(self.are_taken & (self.followed.groups.deciding < 0))
+
 
 @dataclass
 class Taken:
@@ -53,8 +61,7 @@ class Taken:
     is none, of that after it. `opened` has the messages from which on an obligation is open.
     """
 
-    messages: Messages
-    until: int
+    messages: Elements
     parts: Sequence[Part]
     alone: Mapping[int, Places]
     owed: int
@@ -64,10 +71,9 @@ class Taken:
     violated: list[tuple[Place, int, Slice, Failure]] = field(default_factory=list)
 
 
-def refusal(plan: Plan, slices: Slices, of: Prepared) -> str:
-    """Why columns cannot judge a property of each id; empty if they can."""
+def refusal(plan: Plan, slices: Slices, of: Prepared, others: Others) -> str:
+    """Why columns cannot judge a property of each id that reads `others`; empty if they can."""
     property_, cut = slices.track.property, slices.cut
-    topics = frozenset().union(*cut.sampler.topics.values())
     reasons = {
         "a rate or a timeout": plan.rate is not None or plan.timeout is not None,
         "messages that open instances": not cut.keys,
@@ -75,63 +81,82 @@ def refusal(plan: Plan, slices: Slices, of: Prepared) -> str:
         "ids in arrays": any(key.elements or key.gone for key in cut.keys.values()),
         "a limit on ids": slices.ids.limit is not None,
         "scopes": bool(property_.scopes),
-        "topics that are not sliced": not topics <= cut.keys.keys(),
         "history of slices": bool(cut.deep),
         "signals that are waited for": bool(property_.excused),
         "its conditions": of.tables is None or not of.tables.machine.rests,
         "what is counted": bool(of.counts),
         "a picture of it": slices.track.observer is not None,
     }
-    return next((reason for reason, is_so in reasons.items() if is_so), "")
+    return next((reason for reason, is_so in reasons.items() if is_so), "") or others.refusal()
 
 
 class BySlices:
     """Judges a property for each id by columns, until its `slices` settle."""
 
-    def __init__(self, slices: Slices, of: Prepared, tables: Tables, read: Sequence[str]) -> None:
+    def __init__(self, slices: Slices, of: Prepared, tables: Tables, read: Sequence[str], others: Others) -> None:
         """The signals `read` are those on the topic that is sliced."""
         self.slices = slices
         self._of = of
         self._tables = tables
         self._read = read
         self._known = Known(slices, of, tables.machine)
+        self._others = others
         self._count = self._owed = 0
 
     def take(self, block: Block) -> None:
         """Take the rows of `block`, of which there is one. Raises UnsupportedError; then nothing has changed."""
         [key] = self.slices.cut.keys.values()
-        messages = messages_of(block, self.slices.cut, key, self._read, self._of)
-        if messages.invalid is not None and self._tables.clocks:
-            raise UnsupportedError("messages that make no step, and clocks")
-        known, ids = self._known, self.slices.ids
-        known.require(messages.latest)
-        ids.messages += len(messages)
-        ids.without_id += messages.without_id
-        numbers = known.number(messages.ids)
-        was_decided = known.is_decided.take(numbers)
-        undecided = np.flatnonzero(~was_decided) if was_decided.any() else None
-        runs = valid = runs_of(numbers, undecided)
+        own = messages_of(block, self.slices.cut, key, self._read, self._of, self._others.atoms)
+        shared = self._others.of(block)
+        if own.invalid is not None and (self._tables.clocks or shared.signals):
+            raise UnsupportedError("messages that make no step, and clocks or topics that are not sliced")
+        if self.slices.cut.own_ages and len(own) and own.rows[0] < shared.first:
+            raise UnsupportedError("messages that make no step, from which ages count")
+        ids = self.slices.ids
+        self._known.require(own.latest)
+        ids.messages += len(own)
+        ids.without_id += own.without_id
+        numbers = self._known.number(own.ids)
+        for messages in elements(own, shared, self._known, numbers):
+            self._take(messages)
+        self._others.keep(shared)
+
+    def _take(self, messages: Elements) -> None:
+        """Take some messages."""
+        known, runs = self._known, messages.runs
         known.begin(runs.numbers, self._count + runs.order.take(runs.firsts))
-        if messages.invalid is not None:
-            valid = runs_of(numbers, np.flatnonzero(~was_decided & ~messages.invalid))
-        taken = self._follow(messages, valid, int(block.times[-1]))
+        taken = self._follow(messages, messages.steps, messages.until)
         for part in taken.parts:
             self._advance(messages, part)
-        self._number(taken, numbers, was_decided)
+        self._number(taken, runs)
         for part in taken.parts:
             self._date(taken, part)
             self._decide(taken, part)
         for number, those in taken.alone.items():
             self._take_alone(taken, number, those)
-        known.see(runs.numbers, messages.latest, runs.lasts())
+        self._see(messages, runs, np.ones(len(runs.numbers), np.bool_))
         self._conclude(taken)
         self._count += len(messages)
 
-    def _follow(self, messages: Messages, runs: Runs, until: int) -> Taken:
+    def _see(self, messages: Elements, runs: Runs, of: Mask) -> None:
+        """The slices of these of the `runs` know their last messages with an id."""
+        lasts = messages.lasts.take(runs.lasts)
+        of = of & (lasts >= 0)
+        numbers, lasts = runs.numbers[of], lasts[of]
+        self._known.see(numbers, messages.own.latest, lasts)
+        self._known.letters[numbers] = messages.shared.held(messages.own.letters).take(lasts)
+
+    def _slice(self, taken: Taken, number: int, message: int | None, time: Nanoseconds = 0) -> Slice:
+        """A slice as it is before a message, or, for None, at the end; before its first step, it begins at `time`."""
+        messages = taken.messages
+        messages.shared.load(self.slices.cut, messages.end - 1 if message is None else int(messages.rows[message]) - 1)
+        return self._known.slice(number, time)
+
+    def _follow(self, messages: Elements, runs: Runs, until: int) -> Taken:
         """Follow `runs` up to where a clock comes due; from there on, slices alone."""
         known, parts, alone = self._known, [], {}
         if len(runs.numbers):
-            followed = follow(self._tables, runs, messages.atoms, known.states[runs.numbers])
+            followed = follow(self._tables, runs, messages.letters, known.states[runs.numbers])
             dues, first = followed.dues(messages.times, [due[runs.numbers] for due in known.dues], until)
             parts.append(Part(followed, dues, first == NEVER))
             late = np.flatnonzero(first < NEVER)
@@ -142,65 +167,76 @@ class BySlices:
                 alone[int(runs.numbers[at])] = run[counts[place] :]
             if counts.any():
                 before = runs.taken(late[counts > 0], counts[counts > 0])
-                followed = follow(self._tables, before, messages.atoms, known.states[before.numbers])
+                followed = follow(self._tables, before, messages.letters, known.states[before.numbers])
                 dues, _ = followed.dues(messages.times, [due[before.numbers] for due in known.dues], until)
                 parts.append(Part(followed, dues, np.ones(len(before.numbers), np.bool_)))
-        silent = np.setdiff1d(np.flatnonzero(known.next < until), runs.numbers, assume_unique=True)
-        alone |= dict.fromkeys(silent.tolist(), runs.order[:0])
-        return Taken(messages, until, parts, alone, self._owed)
+        if known.dues:
+            silent = np.setdiff1d(np.flatnonzero(known.next < until), runs.numbers, assume_unique=True)
+            alone |= dict.fromkeys(silent.tolist(), runs.order[:0])
+        return Taken(messages, parts, alone, self._owed)
 
-    def _advance(self, messages: Messages, part: Part) -> None:
+    def _advance(self, messages: Elements, part: Part) -> None:
         """Put slices into the states after the messages that they took, and before that which decides them."""
         known, groups, runs = self._known, part.followed.groups, part.followed.runs
-        outputs, numbers = self._tables.machine.outputs, runs.numbers[part.are_taken]
-        going = part.are_taken & (groups.deciding < 0)
-        self._owed -= int(np.count_nonzero(outputs[known.states[numbers]] == OWED))
-        self._owed += int(np.count_nonzero(outputs[groups.lasts[going]] == OWED))
-        known.states[runs.numbers[going]] = groups.lasts[going]
+        numbers, states = runs.numbers[part.are_taken], groups.lasts.take(part.going)
+        is_owed = self._tables.machine.outputs == OWED
+        self._owed -= int(np.count_nonzero(is_owed.take(known.states.take(numbers))))
+        self._owed += int(np.count_nonzero(is_owed.take(states)))
+        known.states[runs.numbers.take(part.going)] = states
         if not known.dues:
             return
         for due, after in zip(known.dues, part.dues, strict=True):
             due[numbers] = after[part.are_taken]
         known.next[numbers] = np.minimum.reduce([due[numbers] for due in known.dues])
-        known.see(numbers, messages.latest, runs.lasts()[part.are_taken])
+        self._see(messages, runs, part.are_taken)
 
-    def _number(self, taken: Taken, numbers: Places, was_decided: Mask) -> None:
+    def _number(self, taken: Taken, runs: Runs) -> None:
         """Count the messages that are steps, and those that are none."""
         messages, track = taken.messages, self.slices.track
-        lasts = np.full(len(self._known.states), len(messages))
-        for part in taken.parts:
-            at, steps, _ = part.followed.decisions
-            is_taken = part.are_taken[at]
-            runs, at, steps = part.followed.runs, at[is_taken], steps[is_taken]
-            lasts[runs.numbers[at]] = runs.message(at, steps)
-        for number, those in taken.alone.items():
-            tried, steps_ = self._known.slice(number), np.arange(len(messages))
-            count = take_alone(self.slices, tried, messages, those, steps_, taken.until).count
-            if count < len(those):
-                lasts[number] = those[count] - 1
-        if messages.invalid is None and not was_decided.any() and (lasts == len(messages)).all():
+        late = self._late(taken, runs)
+        if messages.invalid is None and not messages.early and not len(late):
             taken.steps = track.steps + np.arange(len(messages) + 1)
         else:
-            is_counted = ~was_decided & (np.arange(len(messages)) <= lasts.take(numbers))
+            is_counted = np.ones(len(messages), np.bool_)
+            is_counted[: messages.early] = is_counted[late] = False
             if messages.invalid is not None:
-                counted = np.flatnonzero(~(is_counted & messages.invalid))
-                count_invalid(track, Stretch(messages.steps, counted, ()))
+                is_none = np.zeros(len(messages.own), np.bool_)
+                is_none[messages.places[is_counted & messages.invalid]] = True
+                count_invalid(track, Stretch(messages.own.steps, np.flatnonzero(~is_none), ()))
                 is_counted &= ~messages.invalid
             taken.steps = track.steps + np.concatenate(([0], is_counted.cumsum()))
         track.steps = int(taken.steps[-1])
 
+    def _late(self, taken: Taken, runs: Runs) -> Places:
+        """The messages of `runs` after those that decide them."""
+        lasts, numbers = np.full(len(runs.numbers), len(taken.messages)), np.arange(len(taken.messages))
+        for part in taken.parts:
+            at, steps, _ = part.followed.decisions
+            at, steps = at[part.are_taken[at]], steps[part.are_taken[at]]
+            of = part.followed.runs
+            lasts[runs.numbers.searchsorted(of.numbers[at])] = of.message(at, steps)
+        for number, those in taken.alone.items():
+            tried = self._slice(taken, number, _first(those))
+            count = take_alone(self.slices, tried, taken.messages, those, numbers, taken.messages.until).count
+            if count < len(those):
+                lasts[runs.numbers.searchsorted(number)] = those[count] - 1
+        if (lasts == len(taken.messages)).all():
+            return runs.order[:0]
+        return runs.order[runs.order > lasts.repeat(runs.lengths)]
+
     def _date(self, taken: Taken, part: Part) -> None:
         """Note when what became of slices that are not decided did."""
         known, machine, groups, runs = self._known, self._tables.machine, part.followed.groups, part.followed.runs
-        is_going = part.are_taken & (groups.deciding < 0)
-        known.stepped[runs.numbers[is_going]] = taken.steps[runs.lasts()[is_going]]
-        changed = groups.last(self._tables.changes, is_going & (machine.outputs[groups.lasts] == OWED))
+        known.stepped[runs.numbers.take(part.going)] = taken.steps.take(runs.lasts.take(part.going))
+        is_going = np.zeros(len(runs.numbers), np.bool_)
+        is_going[part.going] = True
+        changed = groups.last(self._tables.changes, is_going & (machine.outputs == OWED).take(groups.lasts))
         at = np.flatnonzero(changed >= 0)
         since, numbers = runs.message(at, changed[at]), runs.numbers[at]
         known.owed[numbers], known.owed_at[numbers] = taken.steps[since], taken.messages.times[since]
         taken.opened.append(since)
         if self._tables.returns is not None:
-            returned = groups.last(self._tables.returns, is_going & ~machine.as_new[groups.lasts])
+            returned = groups.last(self._tables.returns, is_going & ~machine.as_new.take(groups.lasts))
             at = np.flatnonzero(returned >= 0)
             known.begins[runs.numbers[at]] = self._count + runs.message(at, returned[at])
 
@@ -227,19 +263,20 @@ class BySlices:
     def _violate(self, taken: Taken, number: int, message: int) -> None:
         """Take the step by which a slice is violated."""
         time = int(taken.messages.times[message])
-        one = self._known.slice(number, time)
+        one = self._slice(taken, number, message, time)
         one.track.steps = int(taken.steps[message])
-        one.track.hear(time, self.slices.cut.own_ages)
-        one.track.step(time, taken.messages.values(message, one.id))
+        if taken.messages.is_own(message):
+            one.track.hear(time, self.slices.cut.own_ages)
+        one.track.step(time, taken.messages.values(self.slices.cut, message, one))
         assert one.track.decided_at is not None
         begins = int(self._known.begins[number])
         taken.violated.append(((2 * message + 1, time), begins, one, one.track.decided_at))
 
     def _take_alone(self, taken: Taken, number: int, those: Places) -> None:
         """Have a slice take messages by itself."""
-        known, one = self._known, self._known.slice(number)
+        known, one = self._known, self._slice(taken, number, _first(those))
         track, since = one.track, one.track.open_since
-        alone = take_alone(self.slices, one, taken.messages, those, taken.steps, taken.until)
+        alone = take_alone(self.slices, one, taken.messages, those, taken.steps, taken.messages.until)
         for place, change in alone.changes:
             change_ = (change.current is Verdict.PRESUMABLY_VIOLATED) - (change.previous is Verdict.PRESUMABLY_VIOLATED)
             taken.changes.append((place, change_))
@@ -276,10 +313,12 @@ class BySlices:
         opened = np.concatenate([np.empty(0, np.int64), *taken.opened])
         if len(opened) < self._owed:  # in some slice it has been since before
             return self.slices.track.open_since
-        until = 2 * int(opened.min()) + 1
+        rows = taken.messages.rows
+        until = int(rows.searchsorted(rows[opened.min()], "right"))
         found = [(np.array([key]), np.array([time]), np.array([by])) for (key, time), by in taken.changes]
         found += chain.from_iterable(map(partial(self._changes, taken, until), taken.parts))
         keys, times, changes = (np.concatenate(column) for column in zip(*found, strict=True))
+        keys = 2 * np.append(rows, taken.messages.end)[keys >> 1] + (keys & 1)
         order = np.lexsort((times, keys))
         keys, times, counts = keys[order], times[order], taken.owed + changes[order].cumsum()
         is_last = np.append((keys[1:] != keys[:-1]) | (times[1:] != times[:-1]), True)
@@ -288,16 +327,17 @@ class BySlices:
         if not len(rises):
             return self.slices.track.open_since
         key, time = int(keys[rises[-1]]), int(times[rises[-1]])
-        step = int(taken.steps[(key + 1) >> 1]) - 1
+        step = int(taken.steps[rows.searchsorted((key + 1) >> 1)]) - 1
         return Moment(max(0, step), time, by_time=not key % 2)
 
     def _changes(self, taken: Taken, until: int, part: Part) -> Iterator[tuple[Places, Places, Places]]:
-        """Where in slices an obligation is open from a step on, or no more, and when, up to some place."""
+        """Where in slices an obligation is open from a step on, or no more, and when, before some message."""
         runs, outputs = part.followed.runs, self._tables.machine.outputs
-        for places, steps, before, after in part.followed.groups.changes():
+        begin_before = part.are_taken & (runs.order.take(runs.firsts) < until)
+        for places, steps, before, after in part.followed.groups.changes(begin_before):
             change = (outputs[after] == OWED).astype(np.int64) - (outputs[before] == OWED)
             messages = runs.message(places, steps)
-            at = np.flatnonzero((change != 0) & part.are_taken[places] & (2 * messages < until))
+            at = np.flatnonzero((change != 0) & (messages < until))
             yield 2 * messages[at] + 1, taken.messages.times[messages[at]], change[at]
 
     def settle(self) -> None:
@@ -307,3 +347,7 @@ class BySlices:
         for number in known.kept().tolist():
             self.slices.keep(known.slice(number))
         self._known = Known(self.slices, self._of, self._tables.machine)
+
+
+def _first(messages: Places) -> int | None:
+    return int(messages[0]) if len(messages) else None

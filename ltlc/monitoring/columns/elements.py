@@ -1,0 +1,165 @@
+"""The messages of slices in their order: one with an id is of its slice, any other is one of every slice."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ltlc.inputs.recordings.blocks import Places
+from ltlc.monitoring.columns.bits import Bytes, Mask
+from ltlc.monitoring.columns.ids import Runs, runs_of
+from ltlc.monitoring.columns.known import Known
+from ltlc.monitoring.columns.messages import Messages
+from ltlc.monitoring.columns.others import Shared
+from ltlc.runtime.sampling import New, Value
+from ltlc.runtime.slice_ids import Slice
+from ltlc.runtime.slice_keys import Cut
+from ltlc.runtime.times import NEVER
+
+MOST = 1 << 17
+"""About so many messages of slices are taken at a time."""
+
+
+@dataclass(frozen=True)
+class Elements:
+    """Messages in `rows` of a block, to the slices with these `numbers`, and none else before the row `end`.
+
+    Each is the one of the `own` messages at one of the `places`, or, at -1, a message that is `shared`. `known` has the
+    letters that held in slices before.
+    """
+
+    own: Messages
+    shared: Shared
+    known: Bytes
+    rows: Places
+    places: Places
+    numbers: Places
+    end: int
+
+    def __len__(self) -> int:
+        return len(self.rows)
+
+    @cached_property
+    def times(self) -> Places:
+        """The time of each."""
+        return self.shared.columns.times.take(self.rows)
+
+    @property
+    def until(self) -> int:
+        """The time up to which there is none else."""
+        return int(self.shared.columns.times[self.end - 1])
+
+    @cached_property
+    def runs(self) -> Runs:
+        """Those of slices."""
+        return runs_of(self.numbers, None)
+
+    @cached_property
+    def early(self) -> int:
+        """How many at first are no steps: something that is shared has no value yet."""
+        return int(self.rows.searchsorted(self.shared.first))
+
+    @cached_property
+    def invalid(self) -> Mask | None:
+        """Which are no steps because something is NaN; None if none is."""
+        return None if self.own.invalid is None else self.own.invalid.take(self.places)
+
+    @cached_property
+    def steps(self) -> Runs:
+        """The runs without those that are no steps."""
+        if self.invalid is not None:
+            return runs_of(self.numbers, np.flatnonzero(~self.invalid))
+        return runs_of(self.numbers, np.arange(self.early, len(self))) if self.early else self.runs
+
+    @cached_property
+    def letters(self) -> Bytes:
+        """The letter of each."""
+        if not self.shared.signals:
+            return self.own.letters.take(self.places)
+        letters = self.shared.held(self.own.letters).take(self.lasts)
+        is_new = np.flatnonzero(self.lasts < 0)
+        letters[is_new] = self.known.take(self.numbers.take(is_new))
+        if self.shared.own_news:
+            is_own = np.flatnonzero(self.places >= 0)
+            letters[is_own] = self.own.letters.take(self.places.take(is_own))
+        letters |= self.shared.by_row.take(self.rows)
+        return letters
+
+    @cached_property
+    def lasts(self) -> Places:
+        """At each, the last of the messages with an id that came to its slice; -1 if there was none."""
+        if not self.shared.signals:
+            return self.places
+        places, firsts = self.places.take(self.runs.order), self.runs.firsts
+        at = np.where(places >= 0, np.arange(len(places)), 0)
+        at[firsts] = firsts
+        found = np.empty(len(self), np.int64)
+        found[self.runs.order] = places.take(np.maximum.accumulate(at))
+        return found
+
+    def is_own(self, message: int) -> bool:
+        """Whether one has an id."""
+        return bool(self.places[message] >= 0)
+
+    def values(self, cut: Cut, message: int, one: Slice) -> list[Value]:
+        """What the property reads at one of them, which is of this slice."""
+        row, last = int(self.rows[message]), int(self.lasts[message])
+        found: list[Value] = []
+        for place, wanted in enumerate(cut.window.inputs):
+            if wanted.signal == cut.variable:
+                found.append(one.id)
+            elif wanted.signal in self.shared.signals:
+                found.append(self.shared.value(wanted, row))
+            elif isinstance(wanted, New):
+                found.append(self.is_own(message))
+            else:
+                found.append(self.own.steps.value(wanted, last) if last >= 0 else one.track.judged_on[place])
+        return found
+
+
+def elements(own: Messages, shared: Shared, known: Known, numbers: Places) -> Iterator[Elements]:
+    """The messages of a block in parts, `own` being of the slices with these `numbers`. Decided slices have none.
+
+    After each part, the next is asked for when the slices are `known` as they are then.
+    """
+    size = max(1, MOST // max(1, len(known.numbers)))
+    begins = (0, 0)
+    for end in [*shared.rows[size::size].tolist(), len(shared.columns.times)]:
+        ends = (int(own.rows.searchsorted(end)), int(shared.rows.searchsorted(end)))
+        places = np.arange(begins[0], ends[0])
+        if known.is_decided.any():
+            places = places[~known.is_decided.take(numbers[places])]
+        merged = _merged(own.rows.take(places), places, numbers.take(places), shared.rows[begins[1] : ends[1]], known)
+        yield Elements(own, shared, known.letters, *merged, end)
+        begins = ends
+
+
+def _merged(
+    rows: Places, places: Places, numbers: Places, shared: Places, known: Known
+) -> tuple[Places, Places, Places]:
+    """The messages with an id, and in the rows `shared` one of every slice that there is and that has none there."""
+    if not len(shared):
+        return rows, places, numbers
+    is_new = np.flatnonzero(known.begins.take(numbers) >= NEVER)
+    _, firsts = np.unique(numbers.take(is_new), return_index=True)
+    born = is_new.take(np.sort(firsts))
+    live = np.concatenate((known.going(), numbers.take(born)))
+    counts = len(live) - len(born) + rows.take(born).searchsorted(shared)
+    of = live.take(np.arange(int(counts.sum())) - (counts.cumsum() - counts).repeat(counts))
+    given, at = shared.repeat(counts), rows.searchsorted(shared)
+    own = np.where(np.append(rows, -1).take(at) == shared, np.append(numbers, -1).take(at), -1)
+    if (own >= 0).any():
+        is_other = own.repeat(counts) != of
+        given, of = given[is_other], of[is_other]
+        counts = np.diff(given.searchsorted(shared), append=len(given))
+    before = np.concatenate(([0], counts.cumsum())).take(shared.searchsorted(rows))
+    is_own = np.zeros(len(rows) + len(given), np.bool_)
+    is_own[before + np.arange(len(rows))] = True
+    is_other = ~is_own
+    columns = [np.full(len(is_own), -1) for _ in range(3)]
+    for column, mine, theirs in zip(columns, (rows, places, numbers), (given, -1, of), strict=True):
+        column[is_own], column[is_other] = mine, theirs
+    return columns[0], columns[1], columns[2]
