@@ -68,9 +68,10 @@ def test_decisions_that_become_functions_are_read_back(monkeypatch: pytest.Monke
 
 def test_integers_of_all_types_are_compared_as_what_they_are() -> None:
     compiled, whole = from_text(
-        INTEGERS + "a: never i8 > 2.5 or u8 < 300 and i16 == 2.5\nb: never u64 > i64 or i64 >= 3.5 or u32 > i32\n"
+        INTEGERS
+        + "decl f32 /f std_msgs/Float32.data\na: never i8 > 2.5 or u8 < 300 and i16 == 2.5\nb: never u64 > i64 or i64 >= 3.5 or u32 > i32\n"
         "c: never i8 + 0.5 > u16 and u64 > 3.5\nd: after_until u8 > 3, i8 < 2, never @{u8, opening} > i32\n"
-        "e: never i64 > i8 + 0.5 or min(i8, 3) > 2"
+        "e: never i64 > i8 + 0.5 or min(i8, 3) > 2\nf: never abs(f32) > u64 or -f32 < i64"
     )
     assert differences(emit(compiled, whole), compiled, whole) == []
 
