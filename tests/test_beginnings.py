@@ -15,6 +15,7 @@ from ltlc.assurance.lowered.equality import Equal, compare
 from ltlc.assurance.lowered.letters import Judged
 from ltlc.assurance.programs import c_programs, rust_programs
 from ltlc.assurance.reading import rust as reading_rust
+from ltlc.assurance.reading.c.files import WrittenInC
 from ltlc.assurance.reading.outcomes import Difference, ReadBack
 from ltlc.assurance.replay import Replayed
 from ltlc.assurance.rust_library import compiler as rust_compiler
@@ -108,9 +109,8 @@ def test_emitted_c_does_what_is_defined_while_signals_are_silent(rate: str) -> N
 def test_emitted_rust_does_what_is_defined_while_signals_are_silent() -> None:
     compiled, whole = from_text(TOLD)
     file = rust.file_of(compiled, whole)
-    read = reading_rust.written(file.text, [of.machine for of in compiled])
-    assert all(isinstance(each.read_back(), ReadBack) for each in read if isinstance(each, reading_rust.Written))
-    assert len(read) == 4
+    read = reading_rust.written(file.text, file.c.header, file.c.source, compiled)
+    assert [isinstance(each, WrittenInC) and type(each.read_back()) for each in read] == [ReadBack] * 4
     if rust_compiler() is None:
         pytest.skip("there is no compiler for Rust here")
     found = rust_programs(file, compiled, whole)
@@ -160,20 +160,18 @@ def test_what_c_says_of_signals_without_a_value_is_read_back(right: str, wrong: 
 @pytest.mark.parametrize(
     ("right", "wrong"),
     [
-        ("if signals.v.has(1) { signals.v.ago(0) } else { 0.0 }", "signals.v.ago(0)"),
-        (
-            "if signals.v.has(1) { signals.v.ago(0) } else { 0.0 }",
-            "if signals.v.has(1) { signals.v.ago(0) } else { 7.0 }",
-        ),
-        ("if !signals.v.has(1) && new_v {", "if !signals.v.has(1) && new_st {"),
+        ("if !self.signals.has_v && self.signals.new_v {", "if !self.signals.has_v && self.signals.new_st {"),
+        ("if !self.signals.has_st && self.signals.new_st {", "if !self.signals.has_st {"),
+        ('monitors.signals.mode = "";', ""),
+        ("if !self.signals.has_v {", "if !self.signals.has_on {"),
     ],
 )
 def test_what_rust_says_of_signals_without_a_value_is_read_back(right: str, wrong: str) -> None:
     compiled, whole = from_text(TOLD)
-    text = rust.file_of(compiled, whole).text
-    assert right in text
-    found = reading_rust.written(text.replace(right, wrong, 1), [of.machine for of in compiled])
-    assert any(isinstance(each.read_back(), Difference) for each in found if isinstance(each, reading_rust.Written))
+    file = rust.file_of(compiled, whole)
+    assert right in file.text
+    found = reading_rust.written(file.text.replace(right, wrong, 1), file.c.header, file.c.source, compiled)
+    assert all(isinstance(each, Difference) for each in found)
 
 
 def test_the_gate_refuses_a_machine_that_does_not_wait_for_what_matters() -> None:

@@ -1,4 +1,4 @@
-"""The emitted C of a property as something that can be replayed."""
+"""The emitted C of a property, or the Rust that says the same, as something that can be replayed."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _TOKENS = re.compile(r'"(?:[^"\\]|\\.)*"|/\*.*?\*/|\w+|[^\s\w]', re.DOTALL)
 
 @dataclass(frozen=True)
 class CProgram(CompiledProgram):
-    """The property with a number in emitted C."""
+    """The property with a number in emitted C, or in what is printed from it."""
 
     files: Files
 

@@ -70,7 +70,7 @@ def judge_all(
     messages: Messages,
     budget: Budget,
     watch: Watch | None = None,
-    written: Sequence[Written | Difference | None] | None = None,
+    written: Sequence[Written | Difference] | None = None,
 ) -> list[Judgement | Exceeded]:
     """The judgement of each property, in order, or the limit of `budget` that judging it ran into.
 

@@ -18,7 +18,7 @@ from ltlc.assurance.instance_traffic import InstanceTraffic
 from ltlc.assurance.library import Loaded
 from ltlc.assurance.messages import Messages
 from ltlc.assurance.replay import Run, Shown, Stepper, settled
-from ltlc.assurance.rust_library import RustLibrary, RustProgram
+from ltlc.assurance.rust_library import RustLibrary
 from ltlc.assurance.rust_library import compiler as rust_compiler
 from ltlc.assurance.sliced_traffic import SlicedTraffic
 from ltlc.assurance.sources import given
@@ -103,7 +103,11 @@ def rust_programs(
     path = rust_compiler()
     if path is None:
         return None
-    return _in_libraries(file, compiled, specification, rust.file_of, lambda of: RustLibrary(of, path), RustProgram)
+
+    def program(libraries: Libraries, number: int, text: rust.File) -> Program:
+        return CProgram(libraries, number, text.c)
+
+    return _in_libraries(file, compiled, specification, rust.file_of, lambda of: RustLibrary(of, path), program)
 
 
 def _in_libraries(

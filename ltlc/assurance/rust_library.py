@@ -4,16 +4,13 @@ from __future__ import annotations
 
 import shutil
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
 
-from ltlc.assurance.compiled_program import CompiledProgram
 from ltlc.assurance.library import LIBRARY, Loaded, load
 from ltlc.backends.rust import File
-from ltlc.backends.rust.expressions import is_borrowed, type_text
+from ltlc.backends.rust.types import type_text
 from ltlc.base.files import scratch
 from ltlc.program.types import Scalar, Type, type_of
-from ltlc.specification.shapes import Shape
 
 
 def compiler() -> str | None:
@@ -30,23 +27,12 @@ class RustLibrary(Loaded):
             (folder / "gate.rs").write_text("\n".join(_glue(file)), encoding="utf-8")
             flags = ["--edition=2021", "--crate-type=cdylib", "-Copt-level=1", "-Coverflow-checks=on"]
             functions = load([path, *flags, "gate.rs", "-o", LIBRARY], Path(folder))
-        super().__init__(functions, file.signals.given, list(file.signals.heard))
-
-
-@dataclass(frozen=True)
-class RustProgram(CompiledProgram):
-    """The property with a number in emitted Rust."""
-
-    file: File
-
-    def describe(self, shape: Shape) -> None:
-        """The whole file: no two properties have the same code."""
-        shape.add((self.file.text, self.number))
+        super().__init__(functions, list(file.c.samples.group_of), list(file.c.samples.heard))
 
 
 def _glue(file: File) -> Iterator[str]:
     """Functions with the same names and types whatever was emitted."""
-    lifetime = "<'static>" if file.signals.borrows else ""
+    lifetime = "<'static>" if file.borrows else ""
     monitors, samples = f"Monitors{lifetime}", f"Samples{lifetime}"
     yield "#![deny(warnings)]"
     yield "pub mod emitted;"
@@ -77,22 +63,22 @@ shown.copy_from_nonoverlapping(numbers.as_ptr(), 4);
 
 def _set(file: File) -> str:
     """What sets the field with a number."""
-    signals = file.signals
+    given = file.c.samples
     cases = [
-        f"{number} => (*s).{signals.kept[signal].name} = Some({_value(type_of(signal))}),"
-        for number, signal in enumerate(signals.given)
+        f"{number} => (*s).{file.fields[name]} = Some({_value(type_of(signal))}),"
+        for number, (signal, name) in enumerate(given.fields.items())
     ]
     flags = [
-        f"{number} => (*s).{name} = true,"
-        for number, (topic, name) in enumerate(signals.heard.items(), len(cases))
-        if topic in signals.flags
+        f"{number} => (*s).{file.fields[heard.name]} = true,"
+        for number, heard in enumerate(given.heard.values(), len(cases))
+        if heard.has_flag
     ]
     return f"let _ = (s, value, length); match number {{ {' '.join([*cases, *flags])} _ => {{}} }}"
 
 
 def _value(type_: Type) -> str:
     """A value as Python gives it: strings end with NUL, and what lies elsewhere is never freed."""
-    if not is_borrowed(type_):
+    if not type_.is_array and type_.scalar is not Scalar.TEXT:
         return f"*(value as *const {type_text(type_)})"
     if not type_.is_array:
         return "text(*(value as *const *const c_char))"

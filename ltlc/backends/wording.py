@@ -23,14 +23,13 @@ MEANINGS = {
 class Wording:
     """The words of a language, for a monitor whose members stand behind `own`.
 
-    `judgement` is what stands before its verdict and, if that `is_dated`, the time since when it holds; the first step
-    has set these then. A clock that is due `never` does not run. `duration` is a format, `sooner` the least of times.
-    Of times and how many these are to be, `noted` has what notes another, and whether there are as many, `first` the
-    first. Methods stand behind `method`, and are given what is `handed` to each, first. `words` are false and true.
+    A verdict that `is_dated` has the time since when it holds; the first step has set both then. A clock that is due
+    `never` does not run. `duration` is a format, `sooner` the least of times. Of times and how many these are to be,
+    `noted` has what notes another, and whether there are as many, `first` the first. Methods stand behind `method`, and
+    are given what is `handed` to each, first. `words` are false and true.
     """
 
     own: str
-    judgement: str
     verdicts: Mapping[Verdict, str]
     is_dated: bool
     never: str
@@ -53,8 +52,8 @@ class Wording:
 
     def verdict(self, verdict: Verdict) -> tuple[Statement, ...]:
         """The verdict changes."""
-        changes = f"{self.judgement}verdict = {self.verdicts[verdict]}"
-        return (changes, f"{self.judgement}since = time") if self.is_dated else (changes,)
+        changes = f"{self.own}verdict = {self.verdicts[verdict]}"
+        return (changes, f"{self.own}since = time") if self.is_dated else (changes,)
 
     def settled(self, verdict: Verdict) -> tuple[Statement, ...]:
         """The verdict is this one from now on, which it may have been before."""
@@ -71,7 +70,7 @@ class Wording:
     def _is(self, verdict: Verdict, holds: bool) -> Code:
         """Whether the verdict is this one, or is not."""
         operator = self.same[not holds]
-        return Chain((Text(f"{self.judgement}verdict"), Text(self.verdicts[verdict])), (operator,))
+        return Chain((Text(f"{self.own}verdict"), Text(self.verdicts[verdict])), (operator,))
 
     def clock(self, name: str, since: str, duration: int) -> Statement:
         """The clock is due a duration `since` this or that: `time`, `time - 1`, or itself when it was due; or never."""

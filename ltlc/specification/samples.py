@@ -45,12 +45,12 @@ def in_order(wanted: Iterable[Input]) -> list[Signal]:
     return list(found)
 
 
-def together(signals: Iterable[Signal]) -> list[Sample]:
-    """Those of `signals` that are read from messages, by what they come in."""
+def together(signals: Iterable[Signal], is_grouped: bool = True) -> list[Sample]:
+    """Those of `signals` that are read from messages, by what they come in; unless `is_grouped`, each by itself."""
     found: dict[object, Sample] = {}
     for signal in signals:
         if isinstance(signal.definition, Field):
-            key = entry(signal.definition)
+            key = entry(signal.definition) if is_grouped else signal
             _, others = found.get(key, Sample(signal.definition.topic, ()))
             found[key] = Sample(signal.definition.topic, (*others, signal))
     return list(found.values())

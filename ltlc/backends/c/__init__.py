@@ -110,20 +110,32 @@ def prefix_of(stem: str) -> str:
     return member_names().unique(variable(stem).lower())
 
 
-def emit(compiled: Sequence[Compiled], specification: Specification, stem: str | None = None) -> Files:
-    """The files for `compiled`, to be called `stem`, or as the specification. Raises NotInTargetError."""
+def emit(
+    compiled: Sequence[Compiled], specification: Specification, stem: str | None = None, is_grouped: bool = True
+) -> Files:
+    """The files for `compiled`, to be called `stem`, or as the specification. Raises NotInTargetError.
+
+    Unless samples are `is_grouped`, each has a flag of its own.
+    """
     require_no_bytes(compiled)
     require_a_table(compiled, specification)
     require_no_first_values(compiled)
     stem = stem or PurePath(specification.source.name).stem
     prefix = prefix_of(stem)
-    return _File(compiled, specification, stem, prefix).files()
+    return _File(compiled, specification, stem, prefix, is_grouped).files()
 
 
 class _File:
     """What the parts of one file of properties have in common."""
 
-    def __init__(self, compiled: Sequence[Compiled], specification: Specification, stem: str, prefix: str) -> None:
+    def __init__(
+        self,
+        compiled: Sequence[Compiled],
+        specification: Specification,
+        stem: str,
+        prefix: str,
+        is_grouped: bool,
+    ) -> None:
         self.compiled = compiled
         self.specification = specification
         self.stem = stem
@@ -131,7 +143,7 @@ class _File:
         self.is_rated = specification.rate is not None
         self.ends = specification.timeout is not None
         self.helpers = C(prefix)
-        self.given = Samples([c.specification for c in compiled], self.helpers)
+        self.given = Samples([c.specification for c in compiled], self.helpers, is_grouped)
         signals = signals_of(compiled, self.given, self.helpers, self.is_rated)
         self.table = table_of(compiled, self.given)
         taken = NAMES.split() if self.table else ()

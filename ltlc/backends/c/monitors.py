@@ -33,7 +33,6 @@ def _wording(prefix: str, name: str) -> Wording:
     """What a step of the property `name` does, to the struct `self`; verdicts have names that begin with `prefix`."""
     return Wording(
         own="self->",
-        judgement="self->",
         verdicts={verdict: f"{prefix}_{verdict.name}" for verdict in Verdict},
         is_dated=True,
         never=f"{prefix}_NEVER",
@@ -329,7 +328,7 @@ class PropertyWriter:
     def first(self) -> list[str]:
         """What waits for no value begins with the session."""
         member = f"monitors->{self.name}"
-        start = self._start(replace(self.wording, own=f"{member}.", judgement=f"{member}."))
+        start = self._start(replace(self.wording, own=f"{member}."))
         call = self.call("false").replace("signals->", f"monitors->{self.signals.name}.")
         # A first message may have been none.
         guard = [start.guard, *([Text(f"{member}.invalid == 0")] if self.machine.excused else [])]

@@ -14,7 +14,7 @@ from ltlc.backends.trees import INDENT, Code, Text
 from ltlc.program.lowering import read
 from ltlc.program.types import type_of
 from ltlc.specification.expressions import Field, Input, Match, New, Parallel, Signal
-from ltlc.specification.samples import entry, in_order, together
+from ltlc.specification.samples import Sample, entry, in_order, together
 from ltlc.specification.specification import PropertySpecification, fields, topics_of
 
 
@@ -37,12 +37,12 @@ class Heard:
 
 
 class Samples:
-    """The signals that `properties` read from messages, as C is given them."""
+    """The signals that `properties` read from messages, as a step is given them: `together`, if that `is_grouped`."""
 
-    def __init__(self, properties: Sequence[PropertySpecification], helpers: C) -> None:
+    def __init__(self, properties: Sequence[PropertySpecification], helpers: C, is_grouped: bool = True) -> None:
         self._helpers = helpers
         wanted = [i for p in properties for i in p.inputs()]
-        self.groups = _grouped(in_order(wanted))
+        self.groups = _named(together(in_order(wanted), is_grouped))
         self.group_of = {signal: group for group in self.groups for signal in group.readings}
         news = dict.fromkeys(i for i in wanted if isinstance(i, New))
         self.heard = {heard.topic: heard for heard in self._heard(news)}
@@ -94,10 +94,10 @@ class Samples:
         return lines
 
 
-def _grouped(signals: Iterable[Signal]) -> list[Group]:
+def _named(samples: Iterable[Sample]) -> list[Group]:
     local = member_names("started")
     groups = []
-    for topic, readings in together(signals):
+    for topic, readings in samples:
         first, *more = readings
         assert isinstance(first.definition, Field)
         entries = [s.value for s in first.definition.path if isinstance(s, Match | Parallel)]

@@ -15,7 +15,6 @@ def _noted(times: str, most: int) -> tuple[tuple[Statement, ...], Code]:
 
 PYTHON = Wording(
     own="self.",
-    judgement="self.",
     verdicts={verdict: verdict.name for verdict in Verdict},
     is_dated=False,
     never="NEVER",

@@ -1,18 +1,23 @@
-"""Names of emitted Rust that those of a specification must not hide."""
+"""Names of emitted C in Rust: the same, unless Rust means something else by them."""
 
 from __future__ import annotations
 
-from ltlc.backends.rust.functions import FUNCTIONS
+from ltlc.backends.names import Names
 
 _KEYWORDS = """
 Self abstract as async await become box break const continue crate do dyn else enum extern false final fn for if impl in
 let loop macro match mod move mut override priv pub ref return self static struct super trait true try type typeof union
 unsafe unsized use virtual where while yield
 """
-_TAKEN = """
-bool char str f32 f64 i8 i16 i32 i64 i128 isize u8 u16 u32 u64 u128 usize core std Some None Ok Err Option
-time samples signals state is_first next end is_over has_session outcome due new step begin advance next_deadline
-History Judgement Monitors N Number P Property Samples Signals T Times Verdict NEVER
-"""
+_RESERVED = frozenset(f"{_KEYWORDS} Some None Ok Err NEVER".split())
+_TYPES = frozenset(["Judgement", "Monitors", "Number", "Option", "Property", "Samples", "Self", "Signals", "Verdict"])
 
-RESERVED = frozenset(f"{_KEYWORDS} {_TAKEN}".split()) | frozenset(FUNCTIONS)
+
+def spelled(name: str) -> str:
+    """A name of C, none of which ends so, as one of Rust."""
+    return f"{name}_" if name in _RESERVED else name
+
+
+def type_names() -> Names:
+    """Names of types, beside those that all files have."""
+    return Names(_TYPES)

@@ -35,7 +35,7 @@ class Made:
     """
 
     programs: Sequence[Program] | None
-    written: Sequence[Written | Difference | None] | None
+    written: Sequence[Written | Difference] | None
     files: Callable[[], Mapping[Path, str]]
     note: str = ""
 
@@ -162,7 +162,7 @@ class _Rust:
             file = rust.file_of(compiled, specification)
         except NotInTargetError:
             raise UnfitError(_unfit("Rust", rust.emit, specification, compiled)) from None
-        read = written_in_rust(file.text, [each.machine for each in compiled])
+        read = written_in_rust(file.text, file.c.header, file.c.source, compiled, specification.timeout)
         return Made(rust_programs(file, compiled, specification), read, lambda: {self.path: file.text})
 
 

@@ -29,7 +29,7 @@ def summary(compiled: Compiled, judgement: Judgement | Exceeded, target: str) ->
         return f"{size}; not judged"
     certificate = "NOT certified" if isinstance(judgement.certificate, NotCertified) else "certified"
     found = "" if isinstance(judgement.alphabet, Foreseen) else "; some letters NOT covered"
-    code = f", {_reading_text(judgement.reading)}" if judgement.reading else _UNREAD.get(target, "")
+    code = f", {_reading_text(judgement.reading)}" if judgement.reading else ""
     shown = _cross_check_text(judgement.cross_check), _replay_text(judgement.replay, target) + code
     return f"{size}{found}; {certificate}; {'; '.join(shown)}"
 
@@ -53,10 +53,6 @@ def _replay_text(outcome: Replayed | Deviation | None, target: str) -> str:
     if isinstance(outcome, Deviation):
         return "the code behaves DIFFERENTLY"
     return f"code replayed on {_count(outcome.runs, 'run')}"
-
-
-_UNREAD = {"rust": ", NOT read back"}
-"""What is said of targets in which the text of some properties is code that nothing reads yet."""
 
 
 def _reading_text(outcome: ReadBack | Difference) -> str:

@@ -16,6 +16,7 @@ from ltlc.assurance.reading.c.files import written as written_in_c
 from ltlc.assurance.reading.files import written
 from ltlc.assurance.reading.outcomes import Difference, ReadBack, Written
 from ltlc.assurance.reading.rust import written as written_in_rust
+from ltlc.backends import rust
 from ltlc.backends.spelling import NotInTargetError
 from ltlc.base.limits import Budget, Exceeded, run_all
 from ltlc.compiler import Compiled
@@ -83,9 +84,9 @@ def _are_read_back(code: Code, compiled: Sequence[Compiled], specification: Spec
     return all(isinstance(outcome, ReadBack) for outcome in found)
 
 
-def _read_back(compiled: Compiled, part: Written | Difference | None) -> ReadBack | Difference | None:
-    """Whether the text says the machine, and the machine is the certified monitor; None if it is not read yet."""
-    if part is None or isinstance(part, Difference):
+def _read_back(compiled: Compiled, part: Written | Difference) -> ReadBack | Difference:
+    """Whether the text says the machine, and the machine is the certified monitor."""
+    if isinstance(part, Difference):
         return part
     lowered = compare(compiled.machine, _judged(compiled))
     return lowered if isinstance(lowered, Difference) else part.read_back()
@@ -95,13 +96,12 @@ def _judged(compiled: Compiled) -> Judged:
     return Judged(compiled.specification, compiled.formula, compiled.monitor)
 
 
-def _written(
-    code: Code, compiled: Sequence[Compiled], specification: Specification
-) -> Sequence[Written | Difference | None]:
+def _written(code: Code, compiled: Sequence[Compiled], specification: Specification) -> Sequence[Written | Difference]:
     match code.target:
         case "rust":
             (text,) = code.texts.values()
-            return written_in_rust(text, [each.machine for each in compiled])
+            files = rust.in_c(compiled, specification)
+            return written_in_rust(text, files.header, files.source, compiled, specification.timeout)
         case "c":
             texts = code.texts[f"{code.stem}.h"], code.texts[f"{code.stem}.c"]
             return written_in_c(*texts, compiled, specification.rate, specification.timeout)
@@ -112,13 +112,11 @@ def _written(
     return written(text, [each.machine for each in compiled], [each.specification for each in compiled])
 
 
-def _answer(outcome: ReadBack | Difference | Exceeded | None) -> str:
+def _answer(outcome: ReadBack | Difference | Exceeded) -> str:
     match outcome:
         case ReadBack():
             return "its steps, read back, match the certified monitor"
         case Difference():
             return f"its steps do NOT match the monitor: {outcome}"
-        case None:
-            return "its steps were NOT read back: this form of text is not supported yet"
         case _:
             return f"its steps were NOT read back: that {outcome}"

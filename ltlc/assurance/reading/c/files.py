@@ -62,14 +62,15 @@ def written(
     properties: Sequence[Property],
     rate: float | None = None,
     timeout: Nanoseconds | None = None,
+    is_grouped: bool = True,
 ) -> Sequence[WrittenInC | Difference]:
     """What is written of each of `properties` in a header and a source file, or their errors.
 
-    `rate`, in Hz, and `timeout` are those of their specification.
+    `rate`, in Hz, and `timeout` are those of their specification. Unless samples are `is_grouped`, each has a flag.
     """
     try:
         with shaped():
-            return _File(header, source, properties, rate, timeout).written()
+            return _File(header, source, properties, rate, timeout, is_grouped).written()
     except NotUnderstoodError as error:
         return [Difference(str(error))] * len(properties)
 
@@ -84,9 +85,10 @@ class _File:
         properties: Sequence[Property],
         rate: float | None,
         timeout: Nanoseconds | None,
+        is_grouped: bool,
     ) -> None:
         self.definitions = Definitions(header, source)
-        self.members = Members(self.definitions, properties, rate is not None)
+        self.members = Members(self.definitions, properties, rate is not None, is_grouped)
         stepped, expiring = (
             [each.name for each in self.members.structs if f"{each.name}_{end}" in self.definitions]
             for end in ("step", "expire")

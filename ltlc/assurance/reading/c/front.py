@@ -83,7 +83,7 @@ C = Target(_spelling, converts=False)
 def rounded(expression: Expression) -> Expression:
     """An expression as C computes it: of integers of any size it has the doubles nearest to them, before all else."""
     match expression:
-        case Applied(Primitive.TO_DOUBLE, (Applied(primitive, arguments),)) if not arguments[0].type.is_array:
+        case Applied(Primitive.TO_DOUBLE, (Applied(primitive, arguments),)) if _is_wide(arguments):
             return rounded(Applied(primitive, tuple(map(_double, arguments))))
         case Applied(primitive, arguments):
             return Applied(primitive, tuple(map(rounded, arguments)))
@@ -91,6 +91,10 @@ def rounded(expression: Expression) -> Expression:
             return replace(expression, guard=rounded(guard))
         case _:
             return expression
+
+
+def _is_wide(arguments: Sequence[Expression]) -> bool:
+    return any(argument.type.scalar.is_wide and not argument.type.is_array for argument in arguments)
 
 
 def _double(argument: Expression) -> Expression:

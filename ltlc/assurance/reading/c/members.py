@@ -311,7 +311,9 @@ class Pace:
 class Members:
     """The structs of a file for `properties`. Raises NotUnderstoodError where a name does not recall what it has to."""
 
-    def __init__(self, definitions: Definitions, properties: Sequence[Property], is_rated: bool) -> None:
+    def __init__(
+        self, definitions: Definitions, properties: Sequence[Property], is_rated: bool, is_grouped: bool
+    ) -> None:
         self.definitions = definitions
         self.prefix = definitions.prefix
         names = self._names("monitors")[: len(properties)]
@@ -320,7 +322,7 @@ class Members:
         self.structs = [self._struct(name, of) for name, of in zip(names, properties, strict=True)]
         self._wanted = [i for each in self.structs for i in each.inputs]
         self._topics = list(dict.fromkeys(topic for each in self.structs for topic in each.news))
-        self.given = self._given()
+        self.given = self._given(is_grouped)
         self.paces = list(self._paces(is_rated))
 
     def _names(self, end: str) -> list[str]:
@@ -343,8 +345,8 @@ class Members:
             raise NotUnderstoodError(f"`{name}` has other clocks")
         return struct
 
-    def _given(self) -> Given:
-        samples = together(in_order(self._wanted))
+    def _given(self, is_grouped: bool) -> Given:
+        samples = together(in_order(self._wanted), is_grouped)
         names = iter(self._names("samples"))
         called = [{signal: next(names) for signal in sample.signals} for sample in samples]
         groups = [Group(next(names), sample, of) for sample, of in zip(samples, called, strict=True)]
