@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from functools import partial
+from functools import cached_property, partial
 from typing import NamedTuple
 
 from ltlc.frontend.syntax.lexer import FOREIGN
@@ -24,7 +24,7 @@ MOST_WAYS = 6
 """So many ways to go on are kept."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Phrase:
     """What a whole text is that matches `pattern`, as it is `written` here.
 
@@ -35,6 +35,11 @@ class Phrase:
     pattern: str
     written: str
     differs: str = ""
+
+    @cached_property
+    def compiled(self) -> re.Pattern[str]:
+        """The pattern, compiled when it is first tried: most files have no phrase."""
+        return re.compile(self.pattern)
 
 
 class Meant(NamedTuple):
@@ -183,7 +188,6 @@ PHRASES: tuple[Phrase, ...] = (
 )
 """In the order in which they are tried, those of whole sentences before those of their parts."""
 
-COMPILED = tuple((re.compile(phrase.pattern), phrase) for phrase in PHRASES)
 UNFINISHED = re.compile(r"\b(?:no|some)\s*/")
 """What is left of HPL, and would be a division."""
 
@@ -238,8 +242,8 @@ def _once(so_far: Meant, text: str) -> Iterator[Meant]:
     """What comes of one phrase in a text, the largest parts first."""
     whole = so_far.text
     for part in _parts(whole):
-        for pattern, phrase in COMPILED:
-            match = pattern.fullmatch(whole, part.start, part.end)
+        for phrase in PHRASES:
+            match = phrase.compiled.fullmatch(whole, part.start, part.end)
             if match is None or not all(map(_is_whole, match.groups(""))):
                 continue
             written = phrase.written.format(**{name: _Group(of or "", text) for name, of in match.groupdict().items()})
