@@ -7,11 +7,13 @@ open, not started or not decided.
 
 from __future__ import annotations
 
+import gc
 import os
 import sys
 import traceback
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import suppress
+from functools import partial
 
 from ltlc.base.revision import version_text
 from ltlc.interfaces.commands.parser import COMMANDS, module_of, parser_of
@@ -24,7 +26,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command; the result is the exit code of the process."""
     _open_closed_streams()
     try:
-        code = _run(sys.argv[1:] if arguments is None else arguments)
+        command = _without_garbage(sys.argv[1:]) if arguments is None else _command(arguments)
+        code = command()
         if not sys.stdout.closed:  # the language server closes it when its editor ends
             sys.stdout.flush()
         return code
@@ -48,10 +51,23 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 2
 
 
-def _run(arguments: Sequence[str]) -> int:
+def _command(arguments: Sequence[str]) -> Callable[[], int]:
+    """What runs the command, its module imported."""
     called = next((each for each in arguments if not each.startswith("-")), "")
     options = parser_of({called} & COMMANDS.keys()).parse_args(arguments)
-    return int(module_of(options.command).run(options))
+    return partial(module_of(options.command).run, options)
+
+
+def _without_garbage(arguments: Sequence[str]) -> Callable[[], int]:
+    """The same, in a process that is for this command only: what is imported stays, and is not searched for garbage.
+
+    Children share it, and would copy what they search.
+    """
+    gc.disable()
+    command = _command(arguments)
+    gc.freeze()
+    gc.enable()
+    return command
 
 
 def _open_closed_streams() -> None:

@@ -10,10 +10,6 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import chain, islice, pairwise
 
-from hypothesis import HealthCheck, Phase, find, settings
-from hypothesis import strategies as st
-from hypothesis.errors import NoSuchExample
-
 from ltlc.assurance.runs import (
     Agreement,
     Mismatch,
@@ -35,8 +31,6 @@ from ltlc.semantics.verdicts import Verdict
 from ltlc.semantics.words import Lasso, Letter, Word
 
 MOST_PLANNED_RUNS = 1500
-RANDOM_RUNS = 50
-LONGEST_RANDOM_RUN = 12
 LOOPS_TRIED = 12
 
 
@@ -55,10 +49,12 @@ def cross_check(compiled: Compiled) -> Agreement | Mismatch:
     pairs = islice(residual_runs(compiled.monitor, compiled.formula, judge.letters), MOST_PLANNED_RUNS)
     planned = sorted(dict.fromkeys(chain(short_runs(judge.letters), transitions, pairs)), key=len)
     wrong = (mismatch for run in planned if (mismatch := judge.mismatch(run)))
-    if mismatch := next(wrong, None) or _random_mismatch(judge):
+    from ltlc.assurance import random_runs  # a sixth of a build's start, not needed where time matters
+
+    if mismatch := next(wrong, None) or random_runs.mismatch(judge.letters, judge.mismatch):
         return mismatch
-    longest = max(len(planned[-1]), LONGEST_RANDOM_RUN)
-    return Agreement(len(planned) + RANDOM_RUNS, longest, exhaustive_length(judge.letters))
+    longest = max(len(planned[-1]), random_runs.LONGEST)
+    return Agreement(len(planned) + random_runs.COUNT, longest, exhaustive_length(judge.letters))
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,30 +97,3 @@ def _loops(letters: Sequence[Letter]) -> Iterator[Word]:
     yield from ((letter,) for letter in letters)
     yield from pairwise(letters)
     yield tuple(letters)
-
-
-def _random_mismatch(judge: _Judge) -> Mismatch | None:
-    """The smallest counterexample that hypothesis finds among longer runs."""
-    runs = st.lists(_any_of(judge.letters), max_size=LONGEST_RANDOM_RUN).map(tuple)
-    configuration = settings(
-        max_examples=RANDOM_RUNS,
-        derandomize=True,
-        database=None,
-        deadline=None,
-        phases=(Phase.generate, Phase.shrink),
-        suppress_health_check=list(HealthCheck),
-    )
-    try:
-        return judge.mismatch(find(runs, lambda run: judge.mismatch(run) is not None, settings=configuration))
-    except NoSuchExample:
-        return None
-
-
-def _any_of(letters: Sequence[Letter]) -> st.SearchStrategy[Letter]:
-    """One of `letters`, drawn bit by bit.
-
-    Into all that is no bit, hypothesis mixes constants that it finds in the sources of the running program: it would
-    parse every module of a checkout of ltlc, for a second, and what is drawn would depend on them.
-    """
-    bits = st.tuples(*[st.booleans()] * (len(letters) - 1).bit_length())
-    return bits.map(lambda drawn: letters[sum(bit << place for place, bit in enumerate(drawn)) % len(letters)])

@@ -4,18 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator
 from math import inf
-from typing import assert_never
+from typing import TYPE_CHECKING, assert_never
 
 from ltlc.analysis.findings import Finding
 from ltlc.analysis.subjects import Study, Subject
 from ltlc.automata import translate
-from ltlc.compiler import Compiled
-from ltlc.program.as_new import states_as_new
-from ltlc.program.machine import Machine, State
 from ltlc.semantics.verdicts import Verdict
 from ltlc.specification.expressions import Signal, ValueType
 from ltlc.specification.specification import MOST_IDS, Instances, Slicing
 from ltlc.specification.wire import Kind
+
+if TYPE_CHECKING:
+    from ltlc.program.machine import Machine, State
 
 
 def ask(study: Study, subject: Subject) -> Iterator[Finding]:
@@ -67,6 +67,8 @@ def _is_integer(key: Signal) -> bool:
 
 def _machine(study: Study, subject: Subject) -> Machine:
     """The machine that runs, of which it is decided there what is dropped."""
+    from ltlc.compiler import Compiled  # few properties need machines
+
     specification = subject.specification
     monitor = translate(subject.formula, specification.alphabet)
     return Compiled(specification, study.encoding, subject.formula, monitor).machine
@@ -76,6 +78,8 @@ def _dropped(study: Study, subject: Subject, machine: Machine, of: Slicing | Ins
     """The states in which a slice, or an instance, is dropped without a trace."""
     match of:
         case Slicing():
+            from ltlc.program.as_new import states_as_new
+
             return states_as_new(machine, subject.specification, of) if study.specification.rate is None else ()
         case Instances():
             return [number for number, state in enumerate(machine.states) if state.verdict is Verdict.SATISFIED]

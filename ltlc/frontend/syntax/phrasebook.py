@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
+from functools import cached_property
 
 from ltlc.semantics.durations import UNITS
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Phrase:
     """What a whole text is that matches `pattern`, as it is `written` here.
 
@@ -20,6 +22,11 @@ class Phrase:
     pattern: str
     written: str
     differs: str = ""
+
+    @cached_property
+    def compiled(self) -> re.Pattern[str]:
+        """The pattern, compiled when it is first tried: most files have no phrase."""
+        return re.compile(self.pattern)
 
 
 _P, _Q = r"(?P<p>[^,]+?)", r"(?P<q>[^,]+?)"

@@ -31,7 +31,6 @@ class Meant(NamedTuple):
     differs: tuple[str, ...]
 
 
-COMPILED = tuple((re.compile(phrase.pattern), phrase) for phrase in PHRASES)
 UNFINISHED = re.compile(r"\b(?:no|some|new)\s*/")
 """What is left of HPL, and would be a division."""
 
@@ -100,8 +99,8 @@ def _once(so_far: Meant, text: str) -> Iterator[Meant]:
     """What comes of one phrase in a text, the largest parts first."""
     whole = so_far.text
     for part in _parts(whole):
-        for pattern, phrase in COMPILED:
-            match = pattern.fullmatch(whole, part.start, part.end)
+        for phrase in PHRASES:
+            match = phrase.compiled.fullmatch(whole, part.start, part.end)
             if match is None or not all(map(_is_whole, match.groups(""))):
                 continue
             groups = {name: _Group(of or "", text) for name, of in match.groupdict().items()}

@@ -7,20 +7,22 @@ from dataclasses import dataclass
 from functools import cached_property
 from os import PathLike
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from ltlc.analysis.examine import examine_loaded
-from ltlc.assurance.exactness import late_verdicts
 from ltlc.automata.batch import Known
 from ltlc.base.diagnostics import Diagnostic
 from ltlc.base.errors import UnusableInput
 from ltlc.base.limits import Budget, Watch
 from ltlc.base.nearest import did_you_mean
 from ltlc.base.source import Source
-from ltlc.compiler import Compiled, compile_specification
 from ltlc.frontend.language import load_text, read_source
 from ltlc.frontend.language.suppression import suppress, unsuppressed
 from ltlc.semantics.encodings import ENCODINGS, Encoding
 from ltlc.specification.specification import Specification
+
+if TYPE_CHECKING:
+    from ltlc.compiler import Compiled
 
 Text = str | PathLike[str]
 """A specification: a `str` is its text, a path (`pathlib.Path`) the file that it is in."""
@@ -44,6 +46,8 @@ class Prepared:
     @cached_property
     def late(self) -> tuple[Diagnostic, ...]:
         """A warning for each property whose verdicts may come late: whoever runs these monitors says so."""
+        from ltlc.assurance.exactness import late_verdicts
+
         return tuple(late_verdicts(self.specification.source, self.compiled, self.budget))
 
 
@@ -103,6 +107,8 @@ def prepare(
         examined = examine_loaded(specification, diagnostics, encoding, analyses, watch)
         remarks = examined.diagnostics
         known = examined.monitors
+    from ltlc.compiler import compile_specification  # `ltlc check` does without
+
     compiled, problems = compile_specification(specification, encoding, budget, watch, known)
     if problems:
         raise UnusableInput([*remarks, *problems])

@@ -11,7 +11,6 @@ from typing import Protocol
 from ltlc import backends
 from ltlc.assurance.messages import Messages
 from ltlc.assurance.programs import Monitored, Program, c_programs, programs, rust_programs
-from ltlc.assurance.reading.c.files import written as written_in_c
 from ltlc.assurance.reading.files import READABLE, written
 from ltlc.assurance.reading.outcomes import Difference, Written
 from ltlc.assurance.reading.rust import written as written_in_rust
@@ -130,6 +129,8 @@ class _C:
             refuse_unwritable(path)
 
     def make(self, compiled: Sequence[Compiled], specification: Specification, messages: Messages) -> Made:
+        from ltlc.assurance.reading.c.files import written as written_in_c  # brings pycparser along
+
         try:
             files = c.emit(compiled, specification, self.path.stem)
         except NotInTargetError:
