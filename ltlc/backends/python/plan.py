@@ -9,6 +9,7 @@ from pathlib import PurePath
 from typing import assert_never
 
 from ltlc.automata import watching
+from ltlc.backends.clock_words import lateness
 from ltlc.backends.counts import ages
 from ltlc.backends.inputs import is_from_session
 from ltlc.backends.names import Names, class_name, input_name, variable
@@ -277,8 +278,10 @@ def _clocks(compiled: Compiled) -> Iterator[Group]:
     """The clocks of the program, with what they decide: of `age(s) <= D` and the like, that it holds no more."""
     clocks = [tracker for tracker in trackers_of(compiled.formula) if tracker.bounds]
     for name, tracker in zip(clock_names(compiled.machine), clocks, strict=False):  # those of counts come after them
-        late = isinstance(tracker.subject, Clock | Historically)
-        texts, bounds = tuple_of(map(literal, tracker.atoms)), tuple_of(map(str, tracker.bounds))
+        late, said = isinstance(tracker.subject, Clock | Historically), tracker.atoms
+        if isinstance(tracker.subject, Clock):
+            said = tuple(lateness(tracker.subject, bound) for bound in tracker.bounds)
+        texts, bounds = tuple_of(map(literal, said)), tuple_of(map(str, tracker.bounds))
         yield Group("Clock(", (literal(name), texts, bounds, str(late)), ")")
     for name, count in zip(clock_names(compiled.machine)[len(clocks) :], compiled.specification.counts(), strict=True):
         yield Group("Clock(", (literal(name), tuple_of([literal(count.name)]), "()", "False"), ")")
