@@ -558,7 +558,7 @@ def test_the_gate_refuses_what_is_not_read_back() -> None:
         judgement = judge(Subject(compiled, found[0], part), messages)
         assert judgement.passed is passes
         assert isinstance(judgement.reading, ReadBack) is passes
-        (same,) = judge_all([compiled], found, messages, Budget(), written=[part])
+        (same,) = judge_all([compiled], found, messages, Budget(seconds=60.0), written=[part])
         assert same == judgement
 
 

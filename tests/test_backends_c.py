@@ -400,7 +400,7 @@ WRITTEN = {
 @pytest.mark.parametrize(
     "beside", ["", "decl x /x Float64.data\nnever x > 2\n", "decl x /x Float64.data\nnever new x\n"]
 )
-def test_what_reads_nothing_compiles_without_a_warning_and_has_no_step(settings: str, beside: str) -> None:
+def test_what_reads_nothing_compiles_without_a_warning_and_begins_with_the_session(settings: str, beside: str) -> None:
     for outcome in outcomes(f"{settings}{beside}always 1 < 2\neventually 2 < 1\n"):
         assert isinstance(outcome, Replayed), outcome
 

@@ -85,6 +85,9 @@ a: after new st and st == 1, never new v and not v == 0
 b: always (new mode and mode == "go" implies once (new scan and min(scan) > 0.3 and on))
 c: eventually (new v and 1 / v > 1) within 3 s
 d: always (new on and on implies v < 3)
+e: always 1 < 2
+f: eventually 2 < 1 within 1 s
+g: never once true 1 times
 """
 
 
@@ -110,7 +113,7 @@ def test_emitted_rust_does_what_is_defined_while_signals_are_silent() -> None:
     compiled, whole = from_text(TOLD)
     file = rust.file_of(compiled, whole)
     read = reading_rust.written(file.text, file.c.header, file.c.source, compiled)
-    assert [isinstance(each, WrittenInC) and type(each.read_back()) for each in read] == [ReadBack] * 4
+    assert [isinstance(each, WrittenInC) and type(each.read_back()) for each in read] == [ReadBack] * 7
     if rust_compiler() is None:
         pytest.skip("there is no compiler for Rust here")
     found = rust_programs(file, compiled, whole)

@@ -10,13 +10,16 @@ from typing import Any
 
 import pytest
 from bag_support import FORMS, Sent, made
+from c_mutants import read_back
 from ros_support import Network, Node, emitted
 from stepping import from_text, ns
 
+import ltlc
 from ltlc.assurance import c_library
 from ltlc.assurance.c_library import Library
 from ltlc.assurance.compiled_program import VERDICTS
 from ltlc.assurance.programs import load
+from ltlc.assurance.reading.outcomes import ReadBack
 from ltlc.backends import c, emit
 from ltlc.backends.python import standalone_classes
 from ltlc.monitoring.judging.run import run
@@ -29,13 +32,20 @@ DECLARED = """decl st /st std_msgs/Int32.data
 decl cx /cx std_msgs/Float64.data
 decl hps /hps std_msgs/Float64.data
 decl mode /mode std_msgs/Int32.data
+zone yard = [(0, 0), (1, 0), (0, 1)]
 """
 EXAMPLES = {
     "after new st and st == 1, never new cx and not cx == 0": Verdict.VIOLATED,
     "always (new cx and cx > 0 implies once new hps)": Verdict.SATISFIED,
     "eventually (new mode and mode == 3) within 3 s": Verdict.VIOLATED,
+    "always 1 < 2": Verdict.SATISFIED,
+    "eventually 2 < 1 within 1 s": Verdict.VIOLATED,
+    "never once true 1 times": Verdict.VIOLATED,
+    "never inside(5, 5, yard)": Verdict.PRESUMABLY_SATISFIED,
 }
-"""Properties, and what they are on the drive: the first and the last lost what came before all topics had spoken."""
+"""Properties that do not wait for any value, some because they read nothing, and what they are on the drive."""
+
+RATES = pytest.mark.parametrize("rate", ["", "_rate_ = 20\n"], ids=["messages", "ticks"])
 
 DRIVE: list[tuple[float, str, float]] = [(0, "st", 1), (0.01, "hps", 7), (0.02, "cx", 0.5), (4, "st", 1)]
 """When, on which topic, and what; `mode` stays silent."""
@@ -65,17 +75,30 @@ def as_bag(form: str, folder: Path) -> Path:
     [as_csv, as_json_lines, *(lambda folder, form=form: as_bag(form, folder) for form in ("sqlite3", "mcap"))],
 )
 @pytest.mark.parametrize("keep_verdicts", [False, True], ids=["columns", "rows"])
+@RATES
 def test_they_are_judged_alike_in_every_recording(
-    recorded: Callable[[Path], Path], keep_verdicts: bool, tmp_path: Path
+    recorded: Callable[[Path], Path], keep_verdicts: bool, rate: str, tmp_path: Path
 ) -> None:
-    report = run(*from_text(DECLARED + "\n".join(EXAMPLES)), recorded(tmp_path), keep_verdicts)
+    report = run(*from_text(DECLARED + rate + "\n".join(EXAMPLES)), recorded(tmp_path), keep_verdicts)
     assert report.session is not None
     assert [track.verdict for track in report.session.tracks] == list(EXAMPLES.values())
+    steps = 81 if rate else 1
+    assert [track.steps for track in report.session.tracks[3:]] == [steps] * 4
+
+
+@RATES
+def test_they_are_judged_alike_by_a_monitor_in_python(rate: str) -> None:
+    live = ltlc.monitor(DECLARED + rate + "\n".join(f"p{n}: {each}" for n, each in enumerate(EXAMPLES)))
+    for time, name, value in DRIVE:
+        live.step({name: value}, time=time)
+    assert [each.value for each in live.verdicts.values()] == [each.value for each in EXAMPLES.values()]
 
 
 @pytest.mark.skipif(c_library.compiler() is None, reason="there is no C compiler here")
-def test_they_are_judged_alike_by_emitted_c() -> None:
-    compiled, whole = from_text(DECLARED + "\n".join(EXAMPLES))
+@RATES
+def test_they_are_judged_alike_by_emitted_c(rate: str) -> None:
+    compiled, whole = from_text(DECLARED + rate + "\n".join(EXAMPLES))
+    assert all(isinstance(each, ReadBack) for each in read_back(c.emit(compiled, whole), compiled, whole))
     library = Library(c.emit(compiled, whole), str(c_library.compiler()))
     monitors = library.monitors()
     assert monitors.begin(0)
@@ -123,4 +146,4 @@ def test_they_are_judged_alike_live(folder: Path, network: Network, tmp_path: Pa
         network.wait_until(lambda: {("p0", "violated"), ("p2", "violated")} <= set(node.changes), "what is violated")
         assert node.end() == 1
     (run_,) = node.runs
-    assert [run_[f"p{n}"]["verdict"] for n in range(3)] == [verdict.value for verdict in EXAMPLES.values()]
+    assert [run_[f"p{n}"]["verdict"] for n in range(len(EXAMPLES))] == [verdict.value for verdict in EXAMPLES.values()]

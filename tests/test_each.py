@@ -24,6 +24,7 @@ from each_by_definition import (
     run,
 )
 from language_support import compiled
+from stepping import session
 
 import ltlc
 from ltlc.analysis.analyse import analyse
@@ -206,6 +207,25 @@ def test_a_timeout_counts_from_the_first_step_of_any_slice_and_ends_all() -> Non
     text = "_timeout_ = 0.000000010\np: each g of id: eventually kind == 2 within 8 ns"
     slices = slices_of(whole(text, [track_row(0, 1), track_row(5, 2), track_row(11, 3)], 100))
     assert (list(slices.ids.violated), list(slices.ids.slices)) == ([1], [2])
+
+
+def test_the_end_of_a_run_that_a_slice_begins_is_noticed_by_the_next_message() -> None:
+    declared = "decl id /track std_msgs/Int32.data\ndecl v /v std_msgs/Float64.data\n_timeout_ = 10 ns\n"
+    run = session(f"{declared}each g of id: never g == 3\nnever v > @{{v, -9}}\n")
+    run.message(0, "/v", (1.0,))
+    run.message(5, "/track", (1,))
+    run.message(16, "/track", (3,))
+    assert run.session.is_over
+    assert not slices_of(run.tracks[0]).ids.violated
+
+
+def test_the_end_of_a_run_that_begins_before_any_instance_is_noticed_by_the_next_message() -> None:
+    declared = "decl goal /goal std_msgs/Int32.data\ndecl v /v std_msgs/Float64.data\n_timeout_ = 10 ns\n"
+    run = session(f"{declared}each new goal: never new goal and goal == 3\nnever v > @{{v, -9}}\n")
+    run.message(0, "/v", (1.0,))
+    run.message(11, "/goal", (3,))
+    assert run.session.is_over
+    assert run.tracks[0].verdict is Verdict.PRESUMABLY_SATISFIED
 
 
 def test_a_row_of_a_table_with_two_ids_is_a_step_of_both_slices() -> None:

@@ -19,13 +19,13 @@ from ltlc.program.normal import normal, positive
 from ltlc.program.reference import Run, is_nan, value
 from ltlc.program.types import DOUBLE, Scalar, Type
 from ltlc.runtime.times import NEVER
-from ltlc.semantics.timed_atoms import counts_of, news_of
+from ltlc.semantics.timed_atoms import counts_of, news_that_counts
 from ltlc.semantics.timed_run import TimedRun
 from ltlc.semantics.trackers import trackers_of
 from ltlc.semantics.verdicts import Verdict
 from ltlc.semantics.words import Letter
 from ltlc.specification import evaluation
-from ltlc.specification.expressions import IsTrue, New
+from ltlc.specification.expressions import IsTrue, New, Recent
 
 X, Y, ONE = Held("x", 0, DOUBLE), Held("y", 0, DOUBLE), Literal(1.0, DOUBLE)
 SUM = Apply(Primitive.ADD, (Y, ONE))
@@ -86,7 +86,7 @@ class ByDefinition:
 
     def __init__(self, of: Compiled) -> None:
         self.of, self.state, self.verdict = of, 0, Verdict.NOT_STARTED
-        self.run = TimedRun(trackers_of(of.formula), news_of(of.formula), 0, counts=counts_of(of.formula))
+        self.run = TimedRun(trackers_of(of.formula), news_that_counts(of.formula), 0, counts=counts_of(of.formula))
 
     def take(self, instants: Iterable[Letter]) -> Verdict:
         for instant in instants:
@@ -99,7 +99,8 @@ class ByDefinition:
         specification = self.of.specification
         told = dict(zip(specification.inputs(), values, strict=True))
         letter = evaluation.letter(specification.atoms, told)
-        if letter is not None and not any(is_nan(value) for value in values):
+        measured = (v for each, value in told.items() for v in (value if isinstance(each, Recent) else (value,)))
+        if letter is not None and not any(map(is_nan, measured)):
             return self.take(self.run.step(time, letter))
         news = {IsTrue(each) for each, value in told.items() if isinstance(each, New) and value}
         return self.take(self.run.hear(time, {atom.name for atom in specification.atoms if atom.condition in news}))

@@ -304,7 +304,7 @@ def test_scopes_that_the_past_never_opens_are_never_triggered(tmp_path: Path) ->
     assert all(track.never_triggered for track in tracks.values())
 
 
-@pytest.mark.parametrize(("answer", "because"), [(None, "more than 1 s since after asked"), (0.05, "told")])
+@pytest.mark.parametrize(("answer", "because"), [(None, "more than 1 s since the first asked"), (0.05, "told")])
 def test_of_a_clock_with_several_bounds_the_one_that_passed_is_named(
     tmp_path: Path, answer: float | None, because: str
 ) -> None:
@@ -314,3 +314,27 @@ def test_of_a_clock_with_several_bounds_the_one_that_passed_is_named(
     [track] = recorded(tmp_path, text, rows).values()
     assert track.decided_at is not None
     assert [condition.text for condition in track.decided_at.because] == [because]
+
+
+@pytest.mark.parametrize(
+    ("text", "because"),
+    [
+        ("eventually told within [1 s, 5 s]", "more than 5 s since the beginning"),
+        ("after asked, eventually told within [1 s, 5 s]", "more than 5 s since the first asked"),
+        ("within [1 s, 9 s], always (asked implies eventually told within 2 s)", "1 s after the beginning"),
+        (
+            "after asked, always (late implies eventually told within 1 s)",
+            "the first late without told after the first asked",
+        ),
+        ("after_until asked, late, eventually told within 1 s", "more than 1 s since asked opened the scope"),
+        ("until late, eventually told within 1 s", "more than 1 s since the beginning"),
+    ],
+)
+def test_reasons_name_what_a_clock_counts_from_as_a_person_would(tmp_path: Path, text: str, because: str) -> None:
+    declared = "decl asked /a Bool.data\ndecl told /b Bool.data\ndecl late /c Bool.data\n"
+    late = "true" if "late implies" in text else "false"
+    [track] = recorded(
+        tmp_path, f"{declared}p: {text}\n", f"time,asked,told,late\n0,true,false,{late}\n6,true,false,false\n"
+    ).values()
+    assert track.decided_at is not None
+    assert any(because in condition.text for condition in track.decided_at.because)

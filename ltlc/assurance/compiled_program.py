@@ -39,11 +39,8 @@ class CompiledProgram:
     def runs(self, compiled: Compiled, samples: Samples) -> Iterator[Run[Any]]:
         """Runs as a node has them; where all signals have samples at once, too."""
         traffic, own = Traffic(samples, at_once=True), self.libraries.own
-        if timed_atoms(compiled.formula):
+        if timed_atoms(compiled.formula) or not traffic.sources.topics():
             yield from traffic.in_time(compiled, own)
-            return
-        if not traffic.sources.topics():
-            yield traffic.idle(own)
             return
         courses = Courses(samples, compiled.monitor)
         settings = Settings(None if own.rate is None else RATE)

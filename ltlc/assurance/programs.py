@@ -221,11 +221,8 @@ class Monitored:
             yield from InstanceTraffic(samples, slicing).runs(compiled, self.settings)
             return
         traffic = Traffic(samples)
-        if is_timed(compiled):
+        if is_timed(compiled) or not traffic.sources.topics():
             yield from traffic.in_time(compiled, self.settings)
-            return
-        if not traffic.sources.topics():
-            yield traffic.idle(self.settings)
             return
         courses = Courses(samples, compiled.monitor)
         for course in courses.guided():

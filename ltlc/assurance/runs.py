@@ -1,11 +1,11 @@
 """The runs on which a monitor is judged: short ones all, every transition of it, every pair of it and its formula.
 
 The second kind is the W-method of conformance testing (Chow, *Testing software design modeled by finite-state
-machines*, 1978): if the monitor differs from the reference, and the reference needs no more states than the monitor
-has, then the verdicts differ on one of these runs. The third needs no such bound: what remains of the formula after a
-run decides which continuations satisfy it, so a monitor of the right formula that gives a wrong finite verdict on any
-run gives one on the run that first leads to the same state and the same residual. Both are complete when the letters
-are: for small alphabets.
+machines*, 1978): if the monitor differs from the reference, and the reference needs at most one state more than the
+monitor has, then the verdicts differ on one of these runs. The third needs no such bound: what remains of the formula
+after a run decides which continuations satisfy it, so a monitor of the right formula that gives a wrong finite verdict
+on any run gives one on the run that first leads to the same state and the same residual. Both are complete when the
+letters are: for small alphabets.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import random
 from collections import deque
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import islice
+from itertools import chain, islice, product
 
 from ltlc.assurance.residuals import Residuals
 from ltlc.compiler import Compiled
@@ -32,6 +32,10 @@ MOST_LETTERS = 24
 
 LONGEST_SHORT_RUN, MOST_SHORT_RUNS = 6, 400
 """All runs of a length are tried up to this length, and as long as there are at most that many of them."""
+
+
+MORE_STATES = 1
+"""So many states more than the monitor the reference may need: a wrong monitor is often one that forgot something."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,13 +124,12 @@ def short_runs(letters: Sequence[Letter]) -> Iterator[Word]:
 
 
 def transition_runs(monitor: Monitor, letters: Sequence[Letter]) -> Iterator[Word]:
-    """To each state, then each letter, then each word that tells two states apart."""
+    """To each state, then each letter, or each two, then each word that tells two states apart."""
     access = access_words(monitor, letters)
     suffixes = distinguishing_words(monitor, letters)
-    for word in access.values():
-        for letter in letters:
-            for suffix in suffixes:
-                yield (*word, letter, *suffix)
+    for length in (1, 1 + MORE_STATES):
+        for parts in product(access.values(), all_words(letters, length), suffixes):
+            yield tuple(chain(*parts))
 
 
 def residual_runs(monitor: Monitor, formula: Formula, letters: Sequence[Letter]) -> Iterator[Word]:

@@ -71,7 +71,10 @@ class TimedClass:
         shape.add((self.make, tuple(self.inputs)))
 
     def _telling(self, walks: Walks, samples: Samples) -> Iterator[Run[Given]]:
-        """Walks that tell something, each with some more steps that show where it has led."""
+        """Walks that tell something, each with some more steps that show where it has led.
+
+        Of one that ends with time, silence up to then shows what the next step, which catches up, might hide.
+        """
         known, nonsense = samples.by_letter(()), samples.invalid()
         pulses = {each.name for each in walks.news}
         for told in walks.telling(list(known)):
@@ -88,6 +91,8 @@ class TimedClass:
                 for frame, letter in zip(frames, letters, strict=True)
             ]
             yield self._run(walks.walk(told, [partial(_always, letter) for letter in further]), events)
+            if told.steps and told.until > told.steps[-1].time:
+                yield self._run(walks.walk(told, []), events[: len(told.steps)])
 
     def _run(self, walk: Walk, events: Sequence[tuple[Frame, dict[Read, Value] | None, set[New]]]) -> Run[Given]:
         given_ = [self._given(time, *event) for time, event in zip(walk.times, events, strict=False)]

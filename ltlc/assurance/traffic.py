@@ -145,10 +145,6 @@ class Traffic:
         on_topic = self.sources.on(topic, sample)
         return Said(topic, self.sources.content(on_topic), on_topic)
 
-    def idle(self, settings: Settings) -> Run[Event]:
-        """Time passes: what reads no topic has no step."""
-        return Run((Passed(0), Passed(PERIOD)), ([], []), settings)
-
     def at_random(self, compiled: Compiled, settings: Settings) -> Iterator[Run[Event]]:
         """Messages on one topic or another, some of them without some entries, after gaps of many lengths."""
         gaps = self._gaps(settings)

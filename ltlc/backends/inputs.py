@@ -6,15 +6,13 @@ from collections.abc import Sequence
 
 from ltlc.backends.spelling import NotInTargetError
 from ltlc.compiler import Compiled
-from ltlc.semantics.timed_atoms import timed_atoms
 from ltlc.specification.expressions import Bytes, Each, Field, Match, OfSlice, Parallel, Signal
 from ltlc.specification.specification import Instances, fields
 
 
 def is_from_session(compiled: Compiled) -> bool:
-    """Whether a property begins with the session: it goes by time or reads something, and waits for no value."""
-    machine = compiled.machine
-    return not machine.waits_for and bool(machine.inputs or timed_atoms(compiled.formula))
+    """Whether a property begins with the session: it waits for no value."""
+    return not compiled.machine.waits_for
 
 
 def require_no_instances(compiled: Sequence[Compiled]) -> None:

@@ -45,7 +45,8 @@ class Pace:
     """The ticks of the properties whose ticks begin at one time, and what they see.
 
     `sampler` has a sample of every signal at each tick, `latest` what the next tick
-    sees, `seen` how many messages of each topic ticks have seen.
+    sees, `seen` how many messages of each topic ticks have seen. Properties that are
+    `blind` read nothing.
     """
 
     def __init__(self, ticks: Ticks, sampler: Sampler) -> None:
@@ -53,6 +54,7 @@ class Pace:
         self.sampler = sampler
         self.stepped: list[Stepped] = []
         self.readers = Readers(())
+        self.blind: tuple[Stepped, ...] = ()
         self.topics: frozenset[str] = frozenset()
         self.latest: dict[str, Value] = {}
         self.heard: set[str] = set()
@@ -66,6 +68,7 @@ class Pace:
             self.stepped.append((track, self.sampler.window(track.property.inputs)))
             self.topics |= topics
         self.readers = Readers(self.stepped)
+        self.blind = tuple(each for each in self.stepped if not each[0].property.inputs)
 
     def keep(self, taken: Mapping[str, Value], numbers: Mapping[str, int]) -> None:
         """Keep samples for the next tick: from messages with these numbers on topics.
@@ -94,7 +97,7 @@ class Pace:
         self.heard.clear()
         names, values = tuple(self.latest), tuple(self.latest.values())
         fresh = self.sampler.take(time, names, values, self.topics)
-        return self.readers.concerned(fresh, self.topics)
+        return self.readers.concerned(fresh, self.topics) + self.blind
 
     @property
     def is_settled(self) -> bool:

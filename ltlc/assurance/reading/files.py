@@ -244,7 +244,7 @@ def _of_property(file: PythonFile, node: ast.expr, machine: Machine, specificati
         "inputs": tuple(map(input_data, machine.inputs)),
     }
     right |= {"timed": True} if is_timed else {}
-    if (is_timed or machine.inputs) and not machine.waits_for:
+    if not machine.waits_for:
         right["from_session"] = True
     if machine.excused:
         right["excused"] = tuple(_excused_data(machine, each) for each in machine.excused)

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
+from ltlc.backends.clock_words import lateness
 from ltlc.backends.python.code import Group, literal, tuple_of
 from ltlc.backends.spelling import Speller
 from ltlc.backends.steps import clock_names
@@ -69,8 +70,10 @@ class Reasons:
         names = clock_names(self.compiled.machine)
         clocks = [tracker for tracker in trackers_of(self.compiled.formula) if tracker.bounds]
         for name, tracker in zip(names, clocks, strict=False):  # those of counts come after them
-            late = isinstance(tracker.subject, Clock | Historically)
-            texts, bounds = tuple_of(map(literal, tracker.atoms)), tuple_of(map(str, tracker.bounds))
+            late, said = isinstance(tracker.subject, Clock | Historically), tracker.atoms
+            if isinstance(tracker.subject, Clock):
+                said = tuple(lateness(tracker.subject, bound) for bound in tracker.bounds)
+            texts, bounds = tuple_of(map(literal, said)), tuple_of(map(str, tracker.bounds))
             more = ["True"] if isinstance(tracker.subject, Age) else []
             yield Group("Clock(", (literal(name), texts, bounds, str(late), *more), ")")
         for name, count in zip(names[len(clocks) :], self.compiled.specification.counts(), strict=True):

@@ -84,7 +84,7 @@ def _prepared(of: Compiled, source: Source, known: dict[object, Tables | None]) 
 
 
 def _tables(of: Compiled, slots: tuple[Slot, ...], known: dict[object, Tables | None]) -> Tables | None:
-    if any(opens_by_itself(slot.opening, slot.closing) for slot in slots):
+    if not of.specification.atoms or any(opens_by_itself(slot.opening, slot.closing) for slot in slots):
         return None
     if any((each.of.duration or 0) > MOST_DURATION for each in counted(of)):
         return None

@@ -229,7 +229,7 @@ class ByBlocks:
         if self._session.paces is not None and has_ages(way.track):
             return UnsupportedError("messages between ticks, from which ages count")
         if self._session.paces is not None:
-            also += [None] if way.window.topics else []
+            also += [None] if way.window.topics or way.track.property.from_session else []
         elif way.track.property.from_session and self._session.began is None:
             also += [np.zeros(1, np.int64)]
         try:

@@ -229,9 +229,10 @@ class WrittenInC:
 
     def _handed(self) -> dict[str, Named]:
         """What the parameters of the step stand for: what it is called with, of the same types."""
-        if f"{self.struct.name}_step" not in self.definitions or self.call is None:
+        call = self.first if self.call is None else self.call
+        if f"{self.struct.name}_step" not in self.definitions or call is None:
             return {}
-        places = self._places(self.call)
+        places = self._places(call)
         if self.first is not None and self._places(self.first) != [self._at_first(place) for place in places]:
             raise NotUnderstoodError(f"`{self.struct.name}_step` receives a different first argument")
         unknown = next((place for place in places if place not in self._readings and place != "time"), None)

@@ -21,7 +21,6 @@ from ltlc.program.lowering import read, undefined_parts
 from ltlc.program.machine import Age, Machine, Occurrences
 from ltlc.program.types import BOOL, DOUBLE, Type, recent_of, type_of
 from ltlc.semantics.ltl import Formula
-from ltlc.semantics.timed_atoms import timed_atoms
 from ltlc.specification import expressions as e
 from ltlc.specification.evaluation import number
 from ltlc.specification.expressions import Field, Input, Match, New, Parallel, Past, Recent, Signal, Slope
@@ -100,8 +99,8 @@ class Struct:
 
     @property
     def is_from_session(self) -> bool:
-        """Whether it begins with the session: it goes by time, and waits for no value."""
-        return bool(timed_atoms(self.of.formula)) and not self.of.machine.waits_for
+        """Whether it begins with the session: it waits for no value."""
+        return not self.of.machine.waits_for
 
     @property
     def waited(self) -> list[Input]:

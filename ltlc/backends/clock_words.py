@@ -1,0 +1,50 @@
+"""What a clock that is past a bound says to a person."""
+
+from __future__ import annotations
+
+from ltlc.semantics.durations import Nanoseconds, duration_text
+from ltlc.semantics.intervals import start_of
+from ltlc.semantics.ltl import to_text
+from ltlc.semantics.timed_atoms import (
+    AfterOpened,
+    Clock,
+    EpisodeOpened,
+    FirstOpen,
+    Historically,
+    LastTrigger,
+    UntilScope,
+)
+
+
+def lateness(clock: Clock, bound: Nanoseconds) -> str:
+    """That more than `bound` has passed on `clock`; of an interval, since the scope around it began."""
+    match clock:
+        case AfterOpened(outer, Historically(lasting=int(start)) as event) if event == start_of(outer, start):
+            return lateness(outer, start + bound)
+        case _:
+            return f"more than {duration_text(bound)} since {_moment(clock)}"
+
+
+def _moment(clock: Clock) -> str:
+    """When a clock starts."""
+    match clock:
+        case AfterOpened(outer, Historically(lasting=int(start)) as event) if event == start_of(outer, start):
+            return f"{duration_text(start)} after {_moment(outer)}"
+        case AfterOpened(outer, event):
+            return f"the first {to_text(event)}{_inside(outer)}"
+        case UntilScope(outer):
+            return _moment(outer)
+        case EpisodeOpened(outer, opening):
+            return f"{to_text(opening)} opened the scope{_inside(outer)}"
+        case FirstOpen(outer, trigger, goal):
+            return f"the first {to_text(trigger)} without {to_text(goal)}{_inside(outer)}"
+        case LastTrigger(outer, trigger):
+            return f"the last {to_text(trigger)}{_inside(outer)}"
+        case _:
+            return str(clock)
+
+
+def _inside(outer: Clock) -> str:
+    """The scope that a moment belongs to, unless it is the whole run."""
+    found = _moment(outer)
+    return "" if found == "the beginning" else f" after {found}"
