@@ -150,8 +150,8 @@ def main() -> None:
             print(f"{ids:7,} ids, {text}")
             for name, (whole, sliced) in figures.items():
                 print(f"    {name}: {whole:,.0f} ns without each, {sliced:,.0f} with it", flush=True)
-    [whole] = blocks_of(messages(1_000, options.columns), options.columns)
-    mixed = with_others(whole, max(1, options.columns // 1000))
+    [block] = blocks_of(messages(1_000, options.columns), options.columns)
+    mixed = with_others(block, max(1, options.columns // 1000))
     parts = [mixed.part(first, first + ROWS) for first in range(0, len(mixed.times), ROWS)]
     for text in WITH_OTHERS:
         found = by_columns(*plan_of(f"each g of id: {text}"), parts, options.rounds)

@@ -312,7 +312,7 @@ def test_each_phrase_is_tried_here() -> None:
 def _without(phrase: phrasebook.Phrase, line: str) -> phrases.Meant | None:
     """What `line` would mean if nobody knew `phrase`."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(phrases, "PHRASES", tuple(each for each in phrases.PHRASES if each is not phrase))
+        patch.setattr(phrases, "PHRASES", tuple(each for each in phrasebook.PHRASES if each is not phrase))
         return phrases.meant(line, NAMES, lambda _: True)
 
 
