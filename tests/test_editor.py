@@ -109,6 +109,18 @@ def test_hovering_over_a_keyword_says_what_it_means_and_what_the_property_says()
     assert "In each episode that opens when the distance from robot1 to stop_sign is less than 1" in text
 
 
+def test_hovering_over_the_number_of_a_window_says_how_many_samples_it_has() -> None:
+    text = "decl v /v Float64.data\np: never max(@{v, -4|9:}) > 2 and v > @{v, -1}\n"
+    assert said(text) == "`@{v, -49:}`: the last 49 samples of `v` and the present one, oldest first: 50 values"
+    assert not said(text.replace("|", "").replace("-1}", "-|1}"))
+
+
+@pytest.mark.parametrize("interval", ["[1| s, 5 s]", "[1 s, 5| s]"])
+def test_hovering_over_a_number_of_an_interval_says_from_when_to_when(interval: str) -> None:
+    text = f"decl v /v Float64.data\np: eventually v > 2 within {interval}\n"
+    assert said(text) == "`[1 s, 5 s]`: from 1 s to 5 s after the first instant, both included"
+
+
 def test_hovering_over_a_signal_says_its_type_and_its_topic() -> None:
     text = said(TEXT.replace("min(scan)", "min(sc|an)"))
     assert text == "`scan`: an array of numbers\n\nRead from `/scan`: `sensor_msgs/LaserScan.ranges`, float32[]"

@@ -3,11 +3,12 @@
     nice -n 19 python -m benchmarks.differential [--seconds N] [--seed N] [--every N] [--having TEXT] [--journal FILE]
     python -m benchmarks.differential --count [--journal FILE]
     python -m benchmarks.differential --again SEED [--having TEXT] [--keep FOLDER]
+    python -m benchmarks.differential --each [--seconds N] [--seed N] [--every N] [--journal FILE] [--again SEED]
 
-Each seed is a specification of ten properties and twelve recordings of it. What was compared is kept in a journal, a
-line for each seed, so that a campaign that was stopped goes on, and several can share one (`--seed 0 --every 2`,
-`--seed 1 --every 2`). `--again` makes what differs small, and prints it as a specification and a table. Exit code 1 if
-something differs.
+Each seed is a specification of ten properties and twelve recordings of it, or, with `--each`, a property of each id or
+of each message, and six recordings. What was compared is kept in a journal, a line for each seed, so that a campaign
+that was stopped goes on, and several can share one (`--seed 0 --every 2`, `--seed 1 --every 2`). `--again` makes what
+differs small, and prints it as a specification and a table. Exit code 1 if something differs.
 """
 
 from __future__ import annotations
@@ -17,13 +18,16 @@ import json
 import subprocess
 import sys
 from collections import Counter
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from time import monotonic
 from typing import Any
 
+from benchmarks.differential import each
 from benchmarks.differential.campaign import Difference, Outcome, outcome, seeds
 from benchmarks.differential.fixtures import save, table
-from benchmarks.differential.shrink import shrunk
+from benchmarks.differential.shrink import again, shrunk
 
 ROOT = Path(__file__).parents[2]
 SHOWN = 12
@@ -39,21 +43,27 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=0, help="the first seed")
     parser.add_argument("--every", type=int, default=1, help="take each of so many seeds, the others are another's")
     parser.add_argument("--having", default="", metavar="TEXT", help="only properties in whose text this is")
-    parser.add_argument("--journal", type=Path, default=JOURNAL)
+    parser.add_argument("--each", action="store_true", help="properties of each id and of each message")
+    parser.add_argument("--journal", type=Path)
     parser.add_argument("--count", action="store_true", help="only say what has been compared")
     parser.add_argument("--again", type=int, metavar="SEED", help="only one seed, and make small what differs")
     parser.add_argument(
         "--keep", type=Path, metavar="FOLDER", help="with --again: write what differs to it, as fixtures"
     )
     options = parser.parse_args()
+    if options.each and (options.having or options.keep):
+        parser.error("--having and --keep are for properties of whole runs")
+    judged = each.outcome if options.each else partial(outcome, having=options.having)
     if options.again is not None:
-        return show(outcome(options.again, options.having).differences, options.keep, f"seed_{options.again}")
+        found, anew = judged(options.again).differences, each.again if options.each else again
+        return show(found, partial(shrunk, anew=anew), options.keep, f"seed_{options.again}")
+    options.journal = options.journal or JOURNAL.with_stem("differential_each" if options.each else JOURNAL.stem)
     if not options.count:
-        hunt(options)
+        hunt(options, judged)
     return count(options.journal)
 
 
-def hunt(options: argparse.Namespace) -> None:
+def hunt(options: argparse.Namespace, judged: Callable[[int], Outcome]) -> None:
     """Take seeds that the journal has not, until the time is over."""
     options.journal.parent.mkdir(parents=True, exist_ok=True)
     done = {line["seed"] for line in lines(options.journal)}
@@ -61,7 +71,7 @@ def hunt(options: argparse.Namespace) -> None:
     for seed in seeds(options.seed, options.every, done):
         if monotonic() > end:
             return
-        line = {"seed": seed, "commit": commit, **document(outcome(seed, options.having))}
+        line = {"seed": seed, "commit": commit, **document(judged(seed))}
         with options.journal.open("a") as file:
             file.write(json.dumps(line) + "\n")
 
@@ -114,19 +124,21 @@ def count(journal: Path) -> int:
     commits = Counter(line["commit"] for line in known)
     print(f"commits: {', '.join(f'{commit} ({number})' for commit, number in commits.items())}")
     for line in known:
-        for each in line["differences"]:
-            print(f"seed {line['seed']}, {each['way']}: {each['property']}: {each['problem'][:120]}")
+        for one in line["differences"]:
+            print(f"seed {line['seed']}, {one['way']}: {one['property']}: {one['problem'][:120]}")
     return 1 if different else 0
 
 
-def show(differences: list[Difference], keep: Path | None, name: str) -> int:
+def show(
+    differences: list[Difference], smaller: Callable[[Difference], Difference], keep: Path | None, name: str
+) -> int:
     """Print what differs as a specification and a table, one case for each property, and write it to `keep`."""
     seen: set[tuple[str, str]] = set()
-    for each in differences:
-        if (each.label, each.text) in seen:
+    for one in differences:
+        if (one.label, one.text) in seen:
             continue
-        seen.add((each.label, each.text))
-        small = shrunk(each)
+        seen.add((one.label, one.text))
+        small = smaller(one)
         print(f"== {small.way}, from {small.since} until {small.until}: {small.problem}\n{small.text}")
         print(table(small))
         if keep is not None:

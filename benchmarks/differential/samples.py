@@ -122,6 +122,13 @@ class Sampler:
             if name in self.history:
                 self.history[name].append(value)
 
+    def know(self, time: int, topics: Collection[str], fresh: frozenset[str]) -> None:
+        """What came at a time on these topics is known, though there are no steps yet."""
+        for name, each in self.reads.made.items():
+            self._make(name, each, frozenset(topics), fresh)
+        for topic in topics:
+            self.hear(topic, time, -1)
+
     def look(self, time: int, news: Mapping[str, int], fresh: frozenset[str] = frozenset()) -> None:
         """A step, if all has a value, at which messages are seen that came on these topics at these times."""
         for name, each in self.reads.made.items():

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from random import Random
 from time import monotonic
@@ -19,8 +19,12 @@ SECONDS = 60.0
 """For how long a case is made smaller."""
 
 
-def shrunk(found: Difference, seconds: float = SECONDS) -> Difference:
-    """A smaller case in which the same way differs."""
+Anew = Callable[[Difference], Difference | None]
+"""Judges a case anew, and gives the first difference; None if all is the same."""
+
+
+def shrunk(found: Difference, seconds: float = SECONDS, anew: Anew | None = None) -> Difference:
+    """A smaller case in which the same way differs, judged `anew`."""
     end, now = monotonic() + seconds, found
     is_smaller = True
     while is_smaller and monotonic() < end:
@@ -28,7 +32,7 @@ def shrunk(found: Difference, seconds: float = SECONDS) -> Difference:
         for candidate in _smaller(now):
             if monotonic() > end:
                 break
-            kept = again(candidate)
+            kept = (anew or again)(candidate)
             if kept is not None and _size(kept) < _size(now):
                 now, is_smaller = kept, True
                 break

@@ -112,9 +112,31 @@ def _of_text(document: Document, offset: int) -> tuple[Span | None, list[str]]:
     token = token_at(document, offset)
     said = meaning(document.text[token.span.start : token.span.end]) if token else None
     if token is None or said is None:
-        return None, []
+        return _of_numbers(document, offset)
     around = document.property_at(offset)
     return token.span, [said, *_english([around] if around else [])]
+
+
+def _of_numbers(document: Document, offset: int) -> tuple[Span | None, list[str]]:
+    """What is said of the numbers of a window of samples, or of an interval."""
+    for node in (node for command in document.tree.commands for node, _ in syntax.walk(command)):
+        if not node.span.start <= offset <= node.span.end:
+            continue
+        form = document.source.excerpt(node.span)
+        match node:
+            case syntax.Interval(_, start, end):
+                since, until = (document.source.excerpt(each.span) for each in (start, end))
+                return node.span, [f"`{form}`: from {since} to {until} after the first instant, both included"]
+            case syntax.Recent(_, signal, before) if before.span.start <= offset <= before.span.end:
+                of, count = document.source.excerpt(signal.span), document.source.excerpt(before.span).lstrip("- ")
+                if count.isdigit():
+                    says = (
+                        f"the last {count} samples of `{of}` and the present one, oldest first: {int(count) + 1} values"
+                    )
+                    return node.span, [f"`{form}`: {says}"]
+            case _:
+                pass
+    return None, []
 
 
 def _english(properties: Sequence[PropertySpecification]) -> Iterator[str]:
