@@ -56,25 +56,25 @@ def test_where_no_recorded_point_is_asked_of_a_zone_there_is_no_map(property_: s
 def test_a_map_says_when_the_path_enters_and_leaves_a_zone(tmp_path: Path) -> None:
     rows = ("time,x,y", "0,-1,1", "1,1,1", "2,2,1", "3,2,5")
     found = drawn(tmp_path, "never inside(x, y, kitchen) within 1 ns", *rows)
-    assert found.described == ("The path starts outside kitchen. At 1 s it enters kitchen. At 3 s it leaves kitchen.")
+    assert found.described == ("The path starts outside kitchen. At +1 s it enters kitchen. At +3 s it leaves kitchen.")
     assert "enters kitchen at 1 s" in found.svg
     assert "leaves kitchen at 3 s" in found.svg
 
 
 def test_the_border_belongs_to_a_zone_on_a_map(tmp_path: Path) -> None:
     found = drawn(tmp_path, "never inside(x, y, kitchen) within 1 ns", "time,x,y", "0,-1,1", "1,0,1")
-    assert "At 1 s it enters kitchen." in found.described
+    assert "At +1 s it enters kitchen." in found.described
 
 
 def test_the_point_at_which_a_property_is_violated_is_marked(tmp_path: Path) -> None:
     found = drawn(tmp_path, "never inside(x, y, kitchen)", "time,x,y", "0,-1,1", "2.5,1,1", "3,9,9")
-    assert "violated at 2.5 s" in found.svg
+    assert "violated at +2.5 s" in found.svg
 
 
 def test_a_coordinate_keeps_its_value_until_the_next_and_what_is_not_finite_is_not_drawn(tmp_path: Path) -> None:
     rows = ("time,x,y", "0,,1", "1,-1,", "2,1,", "3,inf,", "4,nan,")
     found = drawn(tmp_path, "never inside(x, y, kitchen) within 1 ns", *rows)
-    assert found.described == "The path starts outside kitchen. At 2 s it enters kitchen."
+    assert found.described == "The path starts outside kitchen. At +2 s it enters kitchen."
 
 
 def test_a_point_that_was_not_recorded_has_no_path(tmp_path: Path) -> None:
@@ -96,4 +96,4 @@ def test_a_page_has_the_map_of_a_property_with_a_zone_and_of_no_other(tmp_path: 
     judge = Judge(compiled, specification, keep_trails=True)
     made.add(judge.judge(recorded(tmp_path, "time,x,y", "0,-1,1", "1,1,1"), [collected.take]), collected)
     assert made.html().count('class="map"') == 1
-    assert "At 1 s it enters kitchen." in made.html()
+    assert "At +1 s it enters kitchen." in made.html()

@@ -83,7 +83,7 @@ def test_times_and_values_are_those_of_the_recording(tmp_path: Path) -> None:
     (line,) = timeline["panels"][0]["lines"]
     assert np.cumsum(numbers(document, line["gaps"])).tolist() == [0, 5e8, 8e9]
     assert numbers(document, line["values"]) == [0.1, 2.3, 1.0]
-    assert (timeline["end"], timeline["clock"]) == (8_000_000_000, {"zero": 1_000_000_000, "since": False})
+    assert (timeline["end"], timeline["clock"]) == (8_000_000_000, {"zero": 0, "since": True})
     assert [(change["time"], change["verdict"]) for change in timeline["changes"]] == [
         (0, "presumably_satisfied"),
         (500_000_000, "violated"),
@@ -207,7 +207,19 @@ def test_a_recording_with_the_time_of_day_is_shown_from_its_beginning_on(tmp_pat
     html = page("slow: never v > 2\n", recorded(tmp_path, "1700000000.5,1,true", "1700000002,3,true"))
     assert data(html)["timelines"][0]["clock"] == {"zero": 0, "since": True}
     assert "2. at +1.5 s" in html
-    assert "From 1700000000.5 s to 1700000002 s (1.5 s)" in html
+    assert "From +0 s to +1.5 s (1.5 s); +0 s is 1700000000.5 s" in html
+
+
+def test_a_page_draws_and_lists_all_violations(tmp_path: Path) -> None:
+    rows = ("10,3,true", "11,1,true", "12.5,3,true", "13,1,true")
+    html = page("slow: never v > 2\n", recorded(tmp_path, *rows))
+    drawn = data(html)["timelines"][0]["violations"]
+    assert drawn == [
+        {"from": 0, "to": 1_000_000_000, "text": "1 s"},
+        {"from": 2_500_000_000, "to": 3_000_000_000, "text": "0.5 s"},
+    ]
+    assert "All violations (2)" in html
+    assert "<li>+2.5 s (step 2) for 0.5 s</li>" in html
 
 
 def test_of_a_large_monitor_only_the_way_is_drawn(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -56,6 +56,8 @@ class Walk:
         while step < end and (track.decided_at is None or keeps):
             time, values = int(times[step]), values_at(track, self._found.steps, self._found.number(step))
             track.hold(time)
+            if track.decided_at is not None and not keeps:
+                return
             is_heard = self._hear(time, values)
             before = _view(track, time)
             track.step(time, values)
