@@ -148,7 +148,7 @@ def test_a_topic_of_an_unknown_type_harms_nothing_that_does_not_read_it(
     assert main(["run", spec(text), str(path)]) == 0
     assert capsys.readouterr().err == ""
     assert main(["new", str(path)]) == 0
-    assert "/level [own_msgs/msg/Level]: the type is not known" in capsys.readouterr().out
+    assert "/level [own_msgs/msg/Level]: the type is unknown" in capsys.readouterr().out
 
 
 def undefined(folder: Path, type_: str = "%") -> None:
