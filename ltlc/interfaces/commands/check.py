@@ -21,6 +21,7 @@ from ltlc.interfaces.commands import arguments
 from ltlc.interfaces.commands.common import FINDING, OK, UNUSABLE, examine, failure, report, unusable
 from ltlc.interfaces.commands.mend import NotMendedError, mend, show_difference
 from ltlc.interfaces.commands.sources import found_in
+from ltlc.interfaces.commands.watching import add_watch, watched
 
 if TYPE_CHECKING:
     from ltlc.analysis.examine import Examined
@@ -51,9 +52,17 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     mends.add_argument("--fix", action="store_true", help="apply every unambiguous fix, and report the rest")
     mends.add_argument("--diff", action="store_true", help="only show what --fix would change")
     arguments.add_budget(parser, "limits for all analyses of a file together", 30.0)
+    add_watch(parser)
 
 
 def run(options: argparse.Namespace) -> int:
+    """Check once, or whenever a file changes; the exit code."""
+    if options.watch:
+        return watched(_run, options, [*options.specifications, *options.recording, *options.msg_path])
+    return _run(options)
+
+
+def _run(options: argparse.Namespace) -> int:
     """Show all findings, and of each property whether it can hold and whether it can fail; the worst exit code."""
     if options.fix and STDIN in options.specifications and options.format not in TEXT:
         return unusable("--fix of stdin writes the text to stdout, which leaves no room for another document")

@@ -14,6 +14,7 @@ from ltlc.inputs.recordings import Block
 from ltlc.interfaces.commands import arguments
 from ltlc.interfaces.commands.common import OK, compile_file, overwritten, refused, report, unusable, unwritable
 from ltlc.interfaces.commands.progress import saying
+from ltlc.interfaces.commands.watching import add_watch, watched
 from ltlc.monitoring.columns.timing import timing
 from ltlc.monitoring.judging.run import Judge, Watcher
 from ltlc.runtime.reports import printable
@@ -47,6 +48,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="FILE.mcap",
         help="write the verdicts as topics with the times of the recording, for Foxglove and PlotJuggler",
     )
+    add_watch(parser)
 
 
 def _add_campaign(group: argparse._ArgumentGroup) -> None:
@@ -69,6 +71,15 @@ def _add_campaign(group: argparse._ArgumentGroup) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
+    """Judge once, or whenever a file changes; the exit code."""
+    if options.watch:
+        outputs = (options.report, options.output, options.summary, options.results)
+        read = [options.specification, *options.recordings, *options.msg_path]
+        return watched(_run, options, read, [each for each in outputs if each])
+    return _run(options)
+
+
+def _run(options: argparse.Namespace) -> int:
     """Judge the recordings, and show the report in the format asked for."""
     from ltlc.monitoring.campaigns.places import find, is_one
 
