@@ -71,7 +71,7 @@ zone kitchen = [(0, 0), (4, 0), (4, 3)]
         ),
         ("always nearest(x, scan) < 2", "At every step, the element of scan nearest to x is less than 2."),
         ("always angle_between(x, 1) < 2", "At every step, the angle between x and 1 is less than 2."),
-        ("never inside(robot.position, kitchen)", "Robot is never inside kitchen."),
+        ("never inside(robot.position, kitchen)", "robot is never inside kitchen."),
         ("never inside(x, x, kitchen)", "The point (x, x) is never inside kitchen."),
         (
             "never distance(robot.position, kitchen) < 1",
@@ -164,7 +164,7 @@ def test_what_only_stands_for_the_message_of_an_instance_is_not_explained() -> N
         ),
         ("eventually sum(scan) / len(scan) > 2", "At some step, sum(scan) / len(scan) is more than 2."),
         ("never sum(scan) > 2", "The sum of scan is never more than 2."),
-        ("never x >{0.5} 2", "X is never more than 2.5."),
+        ("never x >{0.5} 2", "x is never more than 2.5."),
     ],
 )
 def test_a_property_reads_as_a_sentence(text: str, sentence: str) -> None:

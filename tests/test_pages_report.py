@@ -237,7 +237,7 @@ def test_the_command_writes_the_page_with_english_and_examples(
     assert main([*arguments, "--format", "json"]) == 1
     json.loads(capsys.readouterr().out)
     html = (tmp_path / "out.html").read_text(encoding="utf-8")
-    assert "V is never more than 2." in html
+    assert "v is never more than 2." in html
     assert "violated at the earliest" in html
 
 

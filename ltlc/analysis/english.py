@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import assert_never
 
 from ltlc.analysis.atom_words import AT_OPENING, RELATIONS, atom_text, has_verb, predicate_words, signal_text
@@ -28,12 +29,15 @@ class English:
         self._atoms = {atom.name: atom for atom in specification.atoms}
         self._property = specification.property
         self._slicing = specification.slicing
+        self._signals = specification.signals()
         self._step = "moment" if reads_time(specification.property) else "step"
 
     def sentence(self) -> str:
-        """The property as one sentence."""
+        """The property as one sentence; a name with which it begins stays as it is."""
         words = self.clause()
-        return f"{words[0].upper()}{words[1:]}."
+        names = {name for signal in self._signals for name in (signal.name, signal.name.partition(".")[0])}
+        first = re.match(r"[\w.]*", words)
+        return f"{words}." if first and first[0] in names else f"{words[0].upper()}{words[1:]}."
 
     def clause(self) -> str:
         """The property as a part of a sentence."""

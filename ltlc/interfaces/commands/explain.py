@@ -83,14 +83,21 @@ def _lines(explained: Explanation) -> Iterator[str]:
         yield from (f"    {line}" for line in table)
 
 
+_SHOWS = {Verdict.VIOLATED: "refute", Verdict.SATISFIED: "prove"}
+"""What a finite run does to a property that has the verdict."""
+
+
 def _monitor_text(explained: Explanation) -> str:
     """The size of the monitor, and what it can say."""
     if explained.states is None:
         return "takes too long to make"
     number = f"{explained.states} state{'' if explained.states == 1 else 's'}"
     can = listed([verdict.value.replace("_", " ") for verdict in explained.verdicts])
-    permanent = [v.value for v in (Verdict.VIOLATED, Verdict.SATISFIED) if v not in explained.verdicts]
-    cannot = f"; never {listed(permanent, 'or')}: no finite run can decide it" if permanent else ""
+    missing = [each for each in _SHOWS if each not in explained.verdicts]
+    shows = " or ".join(_SHOWS[each] for each in missing)
+    cannot = (
+        f"; never {listed([each.value for each in missing], 'or')}: no finite run can {shows} it" if missing else ""
+    )
     return f"{number}; while the robot runs it can report {can}{cannot}"
 
 
