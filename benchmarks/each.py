@@ -154,8 +154,8 @@ def main() -> None:
     mixed = with_others(block, max(1, options.columns // 1000))
     parts = [mixed.part(first, first + ROWS) for first in range(0, len(mixed.times), ROWS)]
     for text in WITH_OTHERS:
-        found = by_columns(*plan_of(f"each g of id: {text}"), parts, options.rounds)
-        print(f"1,000 ids, one row of 1,000 on /odom, {text}: {found:,.0f} ns a row by columns", flush=True)
+        row = by_columns(*plan_of(f"each g of id: {text}"), parts, options.rounds)
+        print(f"1,000 ids, one row of 1,000 on /odom, {text}: {row:,.0f} ns a row by columns", flush=True)
     for period in (1, 10, 100):
         given = answered(period, options.messages // 5)
         whole, each = beside([plan_of(text)[0] for text in NEW], given, options.rounds)

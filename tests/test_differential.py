@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from itertools import accumulate, count, product
 from pathlib import Path
 from random import Random
 
 import pytest
 
-from benchmarks.differential import campaign, draw, files, fixtures, reference, shrink, targets
+from benchmarks.differential import campaign, draw, each, files, fixtures, reference, shrink, targets
 from benchmarks.differential.campaign import Case, Difference, Outcome
 from benchmarks.differential.reference import Property
 from benchmarks.differential.samples import Recording, Row
@@ -46,6 +47,14 @@ def test_what_is_drawn_is_judged_as_the_definition_says() -> None:
         found = campaign.outcome(next(seeds), properties=6, recordings=2)
         assert not [(each.way, each.label, each.problem) for each in found.differences]
         steps += found.steps.total()
+
+
+def test_what_is_drawn_of_each_id_and_each_message_is_judged_as_the_definition_says() -> None:
+    steps, seeds = Counter[str](), count(5)
+    while steps["rows"] < 1000 or not steps["columns"]:
+        found = each.outcome(next(seeds), recordings=2)
+        assert not [(one.way, one.text.splitlines()[-1], one.problem) for one in found.differences]
+        steps.update(found.steps)
 
 
 def test_a_case_that_differs_is_made_small(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -16,6 +16,7 @@ from benchmarks.differential import targets
 from benchmarks.differential.campaign import Difference, Outcome, live
 from benchmarks.differential.compare import PERMANENT, compared, refuted
 from benchmarks.differential.draw import DECLARATIONS, Draw
+from benchmarks.differential.forms import is_state
 from benchmarks.differential.names import said
 from benchmarks.differential.reference import Judged, Property, judged_alone
 from benchmarks.differential.samples import Recording, Run, Sampler
@@ -134,6 +135,8 @@ class Each:
     def whole(self) -> Property:
         """`each new s: P` as a property of the whole run."""
         head, _, body = self.text.splitlines()[-1].removeprefix("p: each ").partition(": ")
+        assert isinstance(self.body, s.EachMessage)
+        body = f"always ({body})" if is_state(self.body.body) else body
         text = "".join(self.text.splitlines(keepends=True)[:-1]) + f"p: always ({head} implies ({body}))\n"
         names = said(text)
         return Property(names, names.properties["p"])
@@ -173,10 +176,12 @@ def judge_one(found: Outcome, of: Monitors, each: Each, recording: Recording, ch
     """A recording, in every way."""
     is_sliced = isinstance(each.body, s.EachOf)
     parts: Mapping[Any, Property] = each.slices(recording) if is_sliced else {None: each.whole()}
+    if not is_sliced:  # While there is news, ltlc may know of an instance already what becomes of it.
+        recording = Recording(recording.rows, recording.begin, recording.end + 1)
     wanted = {id_: (judged_alone(part, recording), refuted(part, recording)) for id_, part in parts.items()}
     judged = {id_: expected for id_, (expected, _) in wanted.items()}
-    for way, session, changes in _sessions(of, recording, chance):
-        results = _of_slices(session, judged, recording.end) if is_sliced else {None: _of_messages(session, changes)}
+    for way, session in _sessions(of, recording, chance):
+        results = _of_slices(session, judged, recording.end) if is_sliced else {None: _of_messages(session)}
         found.runs[way] += 1
         found.steps[way] += sum(map(live, judged.values()))
         problems, is_early = [], False
@@ -193,7 +198,7 @@ def judge_one(found: Outcome, of: Monitors, each: Each, recording: Recording, ch
 
 def _never_satisfied(of: Judged) -> Judged:
     """Another message may come."""
-    changes: Changes = []
+    changes: list[tuple[int, str]] = []
     for time, verdict in of.changes:
         shown = "presumably_satisfied" if verdict == "satisfied" else verdict
         changes += [(time, shown)] if not changes or changes[-1][1] != shown else []
@@ -201,10 +206,10 @@ def _never_satisfied(of: Judged) -> Judged:
     return replace(of, changes=changes, verdicts=verdicts)
 
 
-def _of_messages(session: Session, changes: Changes | None) -> Found:
+def _of_messages(session: Session) -> Found:
     [track] = session.tracks
     decided = None if track.decided_at is None else track.decided_at.time
-    return Found(track.verdict.value, changes, decided, track.steps, shows_last=True)
+    return Found(track.verdict.value, None, decided, track.steps)
 
 
 def _of_slices(session: Session, expected: Mapping[int, Judged], end: int) -> dict[int, Found]:
@@ -237,20 +242,15 @@ def _of_whole(session: Session, expected: Mapping[int, Judged]) -> list[str]:
     return found
 
 
-Changes = list[tuple[int, str]]
-
-
-def _sessions(of: Monitors, recording: Recording, chance: Random) -> Iterator[tuple[str, Session, Changes | None]]:
-    session, changes = Session(of.judge.plan(())), Changes()
+def _sessions(of: Monitors, recording: Recording, chance: Random) -> Iterator[tuple[str, Session]]:
+    session = Session(of.judge.plan(()))
     rows = ByRows(session)
     for row in recording.rows:
         cells = of.cells(row)
         heard = [topic for topic in row.messages if topic in session.messages]
-        changes += [
-            (c.moment.time, c.current.value) for c in rows.samples(row.time, tuple(cells), list(cells.values()), heard)
-        ]
-    changes += [(c.moment.time, c.current.value) for c in rows.advance(recording.end)]
-    yield "rows", session, changes
+        rows.samples(row.time, tuple(cells), list(cells.values()), heard)
+    rows.advance(recording.end)
+    yield "rows", session
     by_blocks = ByBlocks(Session(of.judge.plan(())), of.judge.prepared)
     given = [Cells(row.time, of.cells(row)) for row in recording.rows]
     ends = sorted(chance.randint(0, len(given)) for _ in range(chance.choice([0, 0, 1, 3])))
@@ -260,4 +260,4 @@ def _sessions(of: Monitors, recording: Recording, chance: Random) -> Iterator[tu
     way = "rows for columns" if by_blocks.ways[0].because else "columns"
     session = by_blocks.session
     ByRows(session).advance(recording.end)
-    yield way, session, None
+    yield way, session

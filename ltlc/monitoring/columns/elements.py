@@ -45,7 +45,13 @@ class Elements:
     @cached_property
     def times(self) -> Places:
         """The time of each."""
-        return self.shared.columns.times.take(self.rows)
+        times = self.shared.columns.times
+        return times if self.is_whole and len(self) == len(times) else times.take(self.rows)
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether these are all messages with an id, and no others."""
+        return not self.shared.signals and len(self) == len(self.own)
 
     @property
     def until(self) -> int:
@@ -78,7 +84,7 @@ class Elements:
     def letters(self) -> Bytes:
         """The letter of each."""
         if not self.shared.signals:
-            return self.own.letters.take(self.places)
+            return self.own.letters if self.is_whole else self.own.letters.take(self.places)
         letters = self.shared.held(self.own.letters).take(self.lasts)
         is_new = np.flatnonzero(self.lasts < 0)
         letters[is_new] = self.known.take(self.numbers.take(is_new))
@@ -129,10 +135,12 @@ def elements(own: Messages, shared: Shared, known: Known, numbers: Places) -> It
     begins = (0, 0)
     for end in [*shared.rows[size::size].tolist(), len(shared.columns.times)]:
         ends = (int(own.rows.searchsorted(end)), int(shared.rows.searchsorted(end)))
-        places = np.arange(begins[0], ends[0])
+        part, places = slice(begins[0], ends[0]), np.arange(begins[0], ends[0])
+        rows, of = own.rows[part], numbers[part]
         if known.is_decided.any():
-            places = places[~known.is_decided.take(numbers[places])]
-        merged = _merged(own.rows.take(places), places, numbers.take(places), shared.rows[begins[1] : ends[1]], known)
+            is_taken = ~known.is_decided.take(of)
+            rows, places, of = rows[is_taken], places[is_taken], of[is_taken]
+        merged = _merged(rows, places, of, shared.rows[begins[1] : ends[1]], known)
         yield Elements(own, shared, known.letters, *merged, end)
         begins = ends
 

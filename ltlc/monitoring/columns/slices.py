@@ -144,7 +144,8 @@ class BySlices:
         of = of & (lasts >= 0)
         numbers, lasts = runs.numbers[of], lasts[of]
         self._known.see(numbers, messages.own.latest, lasts)
-        self._known.letters[numbers] = messages.shared.held(messages.own.letters).take(lasts)
+        if messages.shared.signals:
+            self._known.letters[numbers] = messages.shared.held(messages.own.letters).take(lasts)
 
     def _slice(self, taken: Taken, number: int, message: int | None, time: Nanoseconds = 0) -> Slice:
         """A slice as it is before a message, or, for None, at the end; before its first step, it begins at `time`."""
@@ -318,7 +319,9 @@ class BySlices:
         found = [(np.array([key]), np.array([time]), np.array([by])) for (key, time), by in taken.changes]
         found += chain.from_iterable(map(partial(self._changes, taken, until), taken.parts))
         keys, times, changes = (np.concatenate(column) for column in zip(*found, strict=True))
-        keys = 2 * np.append(rows, taken.messages.end)[keys >> 1] + (keys & 1)
+        at = keys >> 1
+        in_rows = np.where(at < len(rows), rows.take(at, mode="clip"), taken.messages.end)
+        keys = 2 * in_rows + (keys & 1)
         order = np.lexsort((times, keys))
         keys, times, counts = keys[order], times[order], taken.owed + changes[order].cumsum()
         is_last = np.append((keys[1:] != keys[:-1]) | (times[1:] != times[:-1]), True)
