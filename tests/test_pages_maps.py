@@ -57,8 +57,8 @@ def test_a_map_says_when_the_path_enters_and_leaves_a_zone(tmp_path: Path) -> No
     rows = ("time,x,y", "0,-1,1", "1,1,1", "2,2,1", "3,2,5")
     found = drawn(tmp_path, "never inside(x, y, kitchen) within 1 ns", *rows)
     assert found.described == ("The path starts outside kitchen. At +1 s it enters kitchen. At +3 s it leaves kitchen.")
-    assert "enters kitchen at 1 s" in found.svg
-    assert "leaves kitchen at 3 s" in found.svg
+    assert "enters kitchen at +1 s" in found.svg
+    assert "leaves kitchen at +3 s" in found.svg
 
 
 def test_the_border_belongs_to_a_zone_on_a_map(tmp_path: Path) -> None:

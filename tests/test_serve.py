@@ -308,7 +308,7 @@ def test_the_map_of_a_zone_is_shown_as_it_is_after_the_step_that_is_looked_at(se
     before, after = (answer(server, "judge", text=text, steps=steps, at=at)["maps"] for at in (0, 1))
     assert before[0]["described"] == "The path stays outside dock."
     assert after[0]["described"] == "The path starts outside dock. At +1 s it enters dock."
-    assert "violated at 1 s" in after[0]["svg"]
+    assert "violated at +1 s" in after[0]["svg"]
 
 
 def test_a_specification_with_errors_has_nothing_to_judge(server: Server) -> None:

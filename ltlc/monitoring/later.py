@@ -20,7 +20,7 @@ from ltlc.runtime.courses import Course
 from ltlc.runtime.episodes import Episodes
 from ltlc.runtime.properties import Failure, Moment, Monitor, MonitoredProperty
 from ltlc.runtime.reasons import Before
-from ltlc.runtime.sampling import Value
+from ltlc.runtime.sampling import New, Value
 from ltlc.runtime.times import NEVER
 from ltlc.runtime.tracking import Observer, RecordedTrack, Track
 from ltlc.semantics.durations import Nanoseconds
@@ -58,7 +58,7 @@ class Later(Course):
     `is_stuck` if that has been found to violate it as well: so will all up to a step, or a change of an age.
     """
 
-    __slots__ = ("_began", "_last", "_renewed_at", "is_out", "is_stuck", "violations")
+    __slots__ = ("_began", "_has_news", "_last", "_renewed_at", "is_out", "is_stuck", "violations")
 
     def __init__(self, track: Track, first: Failure) -> None:
         """Go on from where a track was violated."""
@@ -69,6 +69,7 @@ class Later(Course):
         self.is_out, self.is_stuck = True, False
         self._last = self._renewed_at = first.time
         self._began = NEVER
+        self._has_news = any(isinstance(wanted, New) for wanted in track.property.inputs)
 
     @property
     def is_over(self) -> bool:
@@ -144,8 +145,9 @@ class Later(Course):
             if was_out:
                 self.monitor, self.verdict = last, Verdict.VIOLATED
             return None
-        self.is_stuck, self._began = False, NEVER
-        self._settle(time)
+        # Of what begins anew without news, the next instant says what this one did.
+        self._began = NEVER
+        self.is_stuck = self._settle(time) and was_out and not self._has_news
         self.is_settled &= was_out == self.is_out and (self.is_out or self.due >= NEVER)
         return None
 
@@ -170,7 +172,8 @@ class Later(Course):
             self._last = time
             if last.until is not None and self.decided_at is not None:
                 self.violations.append(Violation(_moment(self.decided_at)))
-            self.decided_at = None  # it goes on
+            if len(self.violations) < MOST:
+                self.decided_at = None  # it goes on
         elif self.verdict is not Verdict.PRESUMABLY_VIOLATED and last.until is None:
             last.until = time
         return self.is_out
