@@ -56,7 +56,7 @@ def test_it_says_where_each_property_fails_with_the_first_violations_side_by_sid
 ) -> None:
     text = [line.strip() for line in page(capsys).text if line.strip()]
     start = text.index("Violated in 6 recordings. The first:")
-    assert text[start - 2 : start] == ["limit", "never speed > 2"]
+    assert text[start - 3 : start] == ["limit", "never speed > 2", "Speed is never more than 2."]
     assert text[start + 1 : start + 15] == [
         *(f"drives/fast{number}.csv" for number in range(4)),
         "violated at",

@@ -189,6 +189,55 @@ def test_keys_zoom_move_and_go_to_the_violation(browser: chromium.Browser, page:
     assert "violated · v: 2.0" in browser.run("return timelines[0].output.textContent")
 
 
+def test_zooming_keeps_the_violation_where_it_is_and_the_cursor_if_there_is_one(
+    browser: chromium.Browser, page: Path
+) -> None:
+    browser.open(page)
+    place = "return timelines[0].x(arguments[0] ?? timelines[0].failure().time)"
+    browser.run("timelines[0].act('in')")  # where both ends could stay, there is nothing to keep
+    before = browser.run(place)
+    browser.run("timelines[0].act('in')")
+    assert browser.run(place) == pytest.approx(before, abs=1)
+    time = browser.run(
+        "const [one] = timelines, time = (3 * one.view.from + one.view.to) / 4; one.point(time); return time"
+    )
+    before = browser.run(place, time)
+    browser.run("timelines[0].act('in')")
+    assert browser.run(place, time) == pytest.approx(before, abs=1)
+
+
+COLOURS_DRAWN = """return timelines.map(({ canvas }) => {
+  const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+  return new Set(new Uint32Array(data.buffer)).size;
+})"""
+
+
+def test_on_paper_all_timelines_are_drawn_in_light_colours_and_all_details_unfolded(
+    browser: chromium.Browser, page: Path
+) -> None:
+    browser.open(page, scheme="dark")
+    browser.wait_until("return timelines.every(each => each.isLoaded)")
+    folded = browser.run("return document.querySelectorAll('details:not([open])').length")
+    assert folded
+    browser.run("dispatchEvent(new Event('beforeprint'))")
+    browser.run("for (const each of timelines) each.resize()")  # as the layout of paper has it
+    assert min(browser.run(COLOURS_DRAWN)) > 5
+    assert browser.run("return [...timelines[0].pen.getImageData(0, 0, 1, 1).data]") == [255, 255, 255, 255]
+    assert not browser.run("return document.querySelectorAll('details:not([open])').length")
+    browser.run("dispatchEvent(new Event('afterprint'))")
+    assert browser.run("return document.querySelectorAll('details:not([open])').length") == folded
+    assert browser.run("return isDark()")
+
+
+def test_the_picture_of_a_monitor_fits_its_column(browser: chromium.Browser, page: Path) -> None:
+    browser.open(page, width=360)
+    browser.run("for (const each of document.querySelectorAll('details')) each.open = true")
+    wide = (
+        "return [...document.querySelectorAll('.picture')].filter(each => each.scrollWidth > each.clientWidth).length"
+    )
+    assert browser.run(wide) == 0
+
+
 def test_nothing_is_fetched(browser: chromium.Browser, page: Path) -> None:
     browser.open(page)
     assert browser.run("return performance.getEntriesByType('resource').map(each => each.name)") == []

@@ -89,7 +89,7 @@ def test_whoever_types_a_property_and_a_value_that_breaks_it_sees_the_violation(
     browser.run("const area = document.getElementById('text'); area.focus(); area.select()")
     press(browser, *"never robot.velocity > 3")
     browser.wait_until("return document.querySelector('.property')?.textContent === 'never robot.velocity > 3'")
-    assert "the speed of robot is more than 3" in browser.run("return document.querySelector('.english').textContent")
+    assert "speed of robot is never more than 3" in browser.run("return document.querySelector('.english').textContent")
     browser.run("document.querySelector('[aria-label=\"robot.velocity, step 2\"]').select()")
     press(browser, *"3.5")
     wait_for_verdict(browser, "violated")
@@ -229,6 +229,27 @@ def test_a_table_that_is_pasted_is_the_run(browser: chromium.Browser) -> None:
     assert "no property reads the column `other`" in browser.run(
         "return document.getElementById('remarks').textContent"
     )
+
+
+DROP = """const [name, text] = arguments, files = new DataTransfer();
+files.items.add(new File([text], name));
+document.body.dispatchEvent(new DragEvent("drop", { dataTransfer: files, bubbles: true, cancelable: true }));"""
+
+
+def test_a_table_that_is_dropped_is_the_run_and_the_violated_property_is_chosen(browser: chromium.Browser) -> None:
+    write(browser, "slow: never robot.velocity > 9\nslower: never robot.velocity > 2\n")
+    browser.wait_until("return document.querySelectorAll('#properties button').length === 2")
+    browser.run("document.querySelector('#properties button').click()")
+    browser.run(DROP, "drive.CSV", "time,robot.velocity\n0,1\n1,3\n")
+    browser.wait_until("return document.querySelectorAll('#properties button')[1].ariaPressed === 'true'")
+    assert cells(browser, "robot.velocity") == ["1", "3"]
+
+
+def test_a_file_that_is_no_table_is_refused_when_it_is_dropped(browser: chromium.Browser) -> None:
+    before = cells(browser, "robot.velocity")
+    browser.run(DROP, "drive.mcap", "time,robot.velocity\n0,1\n")
+    assert "drive.mcap is not a CSV file" in browser.run("return document.getElementById('state').textContent")
+    assert cells(browser, "robot.velocity") == before
 
 
 def test_a_signal_that_comes_back_has_the_cells_that_it_had(browser: chromium.Browser) -> None:

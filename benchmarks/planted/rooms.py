@@ -10,7 +10,8 @@ LOOSE = "loose modules"
 
 ROOMS = {
     LOOSE: "test_commands_*.py test_mends.py test_language_check.py test_pytest_plugin.py test_render.py test_api.py",
-    "base": "test_commands_*.py test_mends.py test_language_check.py test_pytest_plugin.py test_render.py test_api.py",
+    "base": "test_commands_*.py test_mends.py test_language_check.py test_pytest_plugin.py test_render.py test_api.py "
+    "test_libraries.py test_release.py",
     "analysis": "test_analysis_*.py",
     "interfaces/api": "test_api*.py test_commands_compare.py test_comparison_corpus.py test_comparison_pictures.py",
     "assurance": "test_assurance_*.py test_semantics_certificate.py test_each_code.py test_each_message_code.py",

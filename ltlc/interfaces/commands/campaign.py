@@ -51,10 +51,12 @@ def run_several(judge: Judge, found: Found, options: argparse.Namespace) -> int:
         return UNUSABLE
     written: dict[Path, bytes | str] = {}
     if options.summary:
+        from ltlc.analysis.english import English
         from ltlc.monitoring.campaigns.page import summary_page
 
+        english = {each.specification.label: English(each.specification).sentence() for each in judge.compiled}
         with saying("drawing the summary", options.quiet):
-            written[options.summary] = summary_page(judge.specification.source.name, tally, found)
+            written[options.summary] = summary_page(judge.specification.source.name, tally, found, english)
     if page is not None:
         with saying("drawing the page", options.quiet):
             written[options.report] = page.content()

@@ -16,3 +16,26 @@ function repaint() {
 }
 
 document.addEventListener("theme", repaint);
+
+// Paper cannot wait for what is not read yet, so that is read once the page is there.
+window.addEventListener("load", async () => {
+  for (const timeline of timelines) await timeline.load();
+});
+
+// On paper: light colours, everything unfolded, all timelines drawn; afterwards as it was.
+let asShown = null;
+window.addEventListener("beforeprint", () => {
+  const { style } = document.documentElement;
+  asShown ??= { scheme: style.colorScheme, folded: [...document.querySelectorAll("details:not([open])")] };
+  style.colorScheme = "light";
+  readColours();
+  for (const each of asShown.folded) each.open = true;
+  for (const timeline of timelines) timeline.print();
+});
+window.addEventListener("afterprint", () => {
+  document.documentElement.style.colorScheme = asShown.scheme;
+  for (const each of asShown.folded) each.open = false;
+  asShown = null;
+  readColours();
+  for (const timeline of timelines) timeline.resize();
+});

@@ -1,5 +1,7 @@
 // A timeline: lanes one below the other, and what people do with them.
 
+const PAPER = 720; // how wide a timeline is drawn for paper
+
 class Timeline extends Signals {
   constructor(element, content, view) {
     super();
@@ -60,12 +62,22 @@ class Timeline extends Signals {
   }
 
   resize() {
-    const ratio = window.devicePixelRatio || 1;
-    this.width = this.canvas.clientWidth;
-    this.canvas.width = Math.round(this.width * ratio);
-    this.canvas.height = Math.round(this.height * ratio);
-    this.ratio = ratio;
+    if (asShown) return; // on paper, whose layout is none of ours
+    this.size(this.canvas.clientWidth, window.devicePixelRatio || 1);
     this.redraw();
+  }
+
+  size(width, ratio) {
+    this.width = width;
+    this.ratio = ratio;
+    this.canvas.width = Math.round(width * ratio);
+    this.canvas.height = Math.round(this.height * ratio);
+  }
+
+  // Paper shows what nobody has scrolled to.
+  print() {
+    this.size(PAPER, 2);
+    if (this.isLoaded) this.draw();
   }
 
   redraw() {
@@ -191,8 +203,8 @@ class Timeline extends Signals {
 
   act(what) {
     const actions = {
-      in: () => this.view.zoom(0.5),
-      out: () => this.view.zoom(2),
+      in: () => this.view.zoom(0.5, this.kept()),
+      out: () => this.view.zoom(2, this.kept()),
       reset: () => this.view.reset(),
       left: () => this.view.move(-0.2),
       right: () => this.view.move(0.2),
@@ -201,6 +213,12 @@ class Timeline extends Signals {
       fit: () => { this.fits = !this.fits; this.redraw(); },
     };
     actions[what]();
+  }
+
+  // The moment that stays where it is: the cursor, or else the violation, if it is shown; otherwise the middle.
+  kept() {
+    const { from, to } = this.view;
+    return [this.cursor ?? undefined, this.failure()?.time].find((time) => time >= from && time <= to);
   }
 
   // Show the next change of verdict, or the one before, in the middle.

@@ -16,7 +16,7 @@ const editor = new Editor($("text"), document.querySelector(".marks"), textChang
 const table = new RunTable($("table"), run, { edited: () => runChanged(curves), reshaped, chose, failed });
 const curves = new Curves($("curves"), run, { edited: () => runChanged(table), chose });
 
-let start, findings = [], properties = [], judged = null, rate = null, chosen = 0, at = null, shape = "", isStale = true;
+let start, findings = [], properties = [], judged = null, rate = null, chosen = 0, at = null, shape = "", isStale = true, isNew = true;
 const labels = () => properties.map((property) => property.label);
 const question = (more = {}) => ({ text: editor.text, encoding: $("encoding").value, property: chosen, ...more });
 
@@ -75,6 +75,7 @@ function cursorMoved() {
 }
 
 function choose(number) {
+  isNew = false;
   chosen = number;
   showAll();
   judgeSoon();
@@ -144,7 +145,15 @@ function tell(answer) {
   curves.tell(judged);
   showMachine(answer?.picture ?? null, at);
   showMaps(answer?.maps ?? []);
+  if (judged && isNew) chooseViolated();
   showAll();
+}
+
+// Of what has just been opened, the first property that is violated is the one to look at.
+function chooseViolated() {
+  isNew = false;
+  const violated = judged.findIndex((property) => property.verdict === "violated");
+  if (violated >= 0 && violated !== chosen) choose(violated);
 }
 
 function remark(severity, message, help = "") {
@@ -216,6 +225,7 @@ function open({ text, encoding = start.encodings[0], rows = [] }) {
   run.rows = rows.map(({ time, cells }) => ({ time: String(time), cells: { ...cells } }));
   chosen = 0;
   at = null;
+  isNew = true;
   shape = "";
   textChanged();
 }
@@ -223,6 +233,16 @@ function open({ text, encoding = start.encodings[0], rows = [] }) {
 function openExample({ text, run: csv }) {
   run.paste(csv);
   open({ text, rows: run.rows });
+}
+
+function paste(csv) {
+  try {
+    run.paste(csv);
+    isNew = true;
+    reshaped();
+  } catch (error) {
+    failed(error);
+  }
 }
 
 function even() {
@@ -255,12 +275,17 @@ function listen() {
   $("paste").addEventListener("click", () => $("csv").showModal());
   $("csv").addEventListener("close", () => {
     if ($("csv").returnValue !== "take") return;
-    try {
-      run.paste($("csv-text").value);
-      reshaped();
-    } catch (error) {
-      failed(error);
-    }
+    paste($("csv-text").value);
+  });
+  document.addEventListener("dragover", (event) => {
+    if (event.dataTransfer.types.includes("Files")) event.preventDefault(); // otherwise the file takes the place of the page
+  });
+  document.addEventListener("drop", (event) => {
+    const [file] = event.dataTransfer.files;
+    if (!file) return;
+    event.preventDefault();
+    if (/\.csv$/i.test(file.name)) file.text().then(paste);
+    else failed(new Error(`${file.name} is not a CSV file: write one of it, or use ltlc run`));
   });
   for (const [name, act] of [["explain", explain], ["compare", compare]]) {
     $(name).addEventListener("toggle", () => { if ($(name).open) act(); });

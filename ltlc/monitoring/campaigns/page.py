@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import jinja2
@@ -17,8 +18,11 @@ SIDE_BY_SIDE = 4
 """How many violations of a property are shown side by side."""
 
 
-def summary_page(specification: str, tally: Tally, found: Found) -> str:
-    """The page: which properties fail where, first violations side by side, and what was never triggered."""
+def summary_page(specification: str, tally: Tally, found: Found, english: Mapping[str, str]) -> str:
+    """The page: which properties fail where, first violations side by side, and what was never triggered.
+
+    `english` says in words what each property means, by its label.
+    """
     environment = jinja2.Environment(
         loader=jinja2.PackageLoader("ltlc.monitoring.campaigns", "."),
         autoescape=True,
@@ -37,6 +41,7 @@ def summary_page(specification: str, tally: Tally, found: Found) -> str:
         failing=[_failures(each) for each in properties if each.failing],
         idle=[each for each in properties if each.is_idle],
         errors=tally.errors,
+        english=english,
     )
 
 
