@@ -222,7 +222,9 @@ def test_the_summary_says_that_nothing_was_replayed_without_a_compiler_and_what_
 
 
 @needs_rustc
-@pytest.mark.parametrize("name", ["self", "match", "value", "Signals", "history", "double", "time", "is_first"])
+@pytest.mark.parametrize(
+    "name", ["self", "match", "move", "Some", "value", "Signals", "double", "time", "is_first", "ltlc", "monitors"]
+)
 def test_names_of_a_specification_hide_nothing_of_the_file(name: str) -> None:
     library(*from_text(f"decl {name} /{name} Float64MultiArray.data\n{name}: never any({name} > 2)\n"))
 

@@ -80,9 +80,11 @@ class Printer:
         return self.types.text(given, "'a " if given.name in kept else "")
 
     def called(self, name: str) -> str:
-        """What a function is called in Rust."""
-        short, owner = self.trees.short(name), self.trees.owner(name)
-        return short if owner is None else short.removeprefix(f"{owner}_")
+        """What a function is called in Rust: one of a property without the name of that."""
+        if "static" not in self.trees.functions[name].decl.storage:
+            return self.trees.short(name)
+        owner = self.trees.owner(name)
+        return name.removeprefix(f"{owner}_") if owner not in (None, "monitors") else name
 
 
 def _kept(node: Node) -> Iterator[str]:

@@ -35,9 +35,11 @@ class Plain:
         return short if short in self.structs else None
 
     def method(self, name: str) -> str:
-        """What a function is called, as a method where it is one."""
+        """What a function is called: one of a property without the name of that, a public one without the prefix."""
+        if "static" not in self.functions[name].decl.storage:
+            return self.short(name)
         owner = self.owner(name)
-        return self.short(name).removeprefix(f"{owner}_") if owner else name
+        return name.removeprefix(f"{owner}_") if owner not in (None, "monitors") else name
 
     def is_method(self, name: str) -> bool:
         """Whether it is one."""
