@@ -373,7 +373,11 @@ def trails(session: Session) -> list[str]:
 def state(session: Session) -> list[Any]:
     """All that a session knows and reports."""
     figures = [reports.figure(session, track) for track in session.tracks if track.verdict is Verdict.VIOLATED]
-    samples = {name: (list(map(repr, each.values)), list(each.times)) for name, each in session.sampler.samples.items()}
+    sampler = session.sampler
+    samples = {
+        name: (list(map(repr, each.values(sampler.known))), list(each.times(sampler.known)))
+        for name, each in sampler.samples.items()
+    }
     known = [
         (
             repr(track.decided_at),

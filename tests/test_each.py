@@ -68,8 +68,8 @@ def compare(of: Quantified, rows: list[Row], until: int) -> None:
     assert (track.episodes or 0) == sum(t.episodes or 0 for t in expected.values())
     for id_, one in slices.slices.items():
         other = expected[id_]
-        assert one.track.verdict is other.verdict
-        assert one.track.deadline() == other.deadline()
+        assert one.verdict is other.verdict
+        assert one.deadline() == other.deadline()
     for id_ in expected.keys() - slices.slices.keys() - decided.keys():
         assert expected[id_].verdict is Verdict.PRESUMABLY_SATISFIED, "only what is well is forgotten"
     undecided = [t for t in expected.values() if not t.verdict.is_permanent]

@@ -118,8 +118,8 @@ def test_elements_of_an_array_are_messages_of_slices(text: str) -> None:
         violated = {i: t.decided_at and t.decided_at.time for i, t in expected.items() if t.verdict is Verdict.VIOLATED}
         assert {i: v.failure.time for i, v in track.slices.ids.violated.items()} == violated
         for id_, one in track.slices.ids.slices.items():
-            assert one.track.verdict is expected[id_].verdict
-            assert one.track.deadline() == expected[id_].deadline()
+            assert one.verdict is expected[id_].verdict
+            assert one.deadline() == expected[id_].deadline()
 
 
 GOALS = """

@@ -53,15 +53,19 @@ FAULTS = {
     "what is gone": (TEXTS["gone"], 'gone="gone id"', "gone=None"),
     "two ids in one place": (RESPONSE, "limit=1000", "limit=1"),
     "ages of what others said before": (TEXTS["ages"], "self._last_heard.items()", "{}.items()"),
-    "an id that is one for all": (TEXTS["the id as a value"], "found[self._place(self.variable)] = id_", "pass"),
-    "samples of another slice": (TEXTS["history"], "known[cut.places] = one.samples", "pass"),
+    "an id that is one for all": (TEXTS["the id as a value"], "found[self._id] = id_", "pass"),
+    "samples of another slice": (TEXTS["history"], "self.sampler.known.copy()", "self.sampler.known"),
     "a topic of all that only new slices hear": (
         TEXTS["with a topic of all"],
         "self._give(time, one, row.rest, values)",
         "pass",
     ),
     "an array that is one message": (TEXTS["elements"], "ids[:count]", "ids[:1]"),
-    "ticks that see nothing of a slice": (TEXTS["ticks"], "part.update.take(time, (*latest.values(), *given))", "pass"),
+    "ticks that see nothing of a slice": (
+        TEXTS["ticks"],
+        "part.update.take(known, time, (*latest.values(), *given))",
+        "pass",
+    ),
     "bytes in another order": (GOALS, "UUID(bytes=value)", "UUID(bytes_le=value)"),
 }
 
@@ -117,7 +121,7 @@ def test_a_change_in_what_slices_a_run_is_refused_by_certify(tmp_path: Path) -> 
     assert cli.main(["build", str(text), "-o", str(node), "--certificate", str(certificate), "-q"]) == 0
     command = ["certify", str(text), str(certificate), "--code", str(node), "-q"]
     assert cli.main(command) == 0
-    for right, wrong in (("limit=1000", "limit=999"), ("found[self._place(self.variable)] = id_", "pass")):
+    for right, wrong in (("limit=1000", "limit=999"), ("found[self._id] = id_", "pass")):
         code = node.read_text()
         node.write_text(code.replace(right, wrong))
         assert cli.main(command) == 1

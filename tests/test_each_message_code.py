@@ -44,8 +44,8 @@ def test_emitted_nodes_judge_each_message_as_the_definition_says(text: str) -> N
 FAULTS = {
     "a message on another topic": ('topic="/fb"', 'topic="/track"'),
     "no message opens": ('topic="/fb"', 'topic="/nothing"'),
-    "an instance with the clocks of the run": ("self.before.track.fork()", "self.before.track"),
-    "one instance for all": ("state_of(one.track.monitor)", "()"),
+    "an instance with the clocks of the run": ("self.before.fork()", "self.before"),
+    "one instance for all": ("state_of(one.monitor)", "()"),
     "an instance that another stands for, uncounted": ("one.more += 1 + other.more", "one.more += other.more"),
 }
 
@@ -86,7 +86,7 @@ def test_a_package_replays_its_instances_where_it_is_installed(tmp_path: Path) -
     assert cli.main(["build", str(text), "--target", "ament", "-o", str(package), "-q"]) == 0
     assert outcome_of(package).returncode == 0
     runtime = package / "goals_monitor" / "runtime" / "slice_openings.py"
-    runtime.write_text(runtime.read_text().replace("self.before.track.fork()", "self.before.track"))
+    runtime.write_text(runtime.read_text().replace("self.before.fork()", "self.before"))
     assert outcome_of(package).returncode == 1
 
 

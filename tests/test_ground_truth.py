@@ -109,7 +109,7 @@ def test_a_primitive_is_what_geometry_says_of_the_messages(kind: str) -> None:
     for time, position in ((10**9, BEFORE), (10**9 + round(SECONDS * 10**9), POSITION)):
         rows.message(time, topic.name, topic.read(MESSAGES[kind](position)))
     signals = [track.property.inputs[0].signal for track in session.tracks]
-    found = [session.sampler.samples[signal].values[0] for signal in signals]
+    found = [session.sampler.values(signal)[0] for signal in signals]
     assert dict(zip(TRUTH[kind], found, strict=True)) == pytest.approx(TRUTH[kind])
 
 
@@ -124,5 +124,5 @@ def test_the_angle_between_two_orientations_is_that_of_the_rotation_from_one_to_
         rows.message(10**9, topic.name, topic.read(message))
     q, p = ORIENTATION, turned
     cosine = (q.x * p.x + q.y * p.y + q.z * p.z + q.w * p.w) / math.hypot(q.x, q.y, q.z, q.w)
-    [found] = session.sampler.samples["robot.orientation_between.cone"].values
+    [found] = session.sampler.values("robot.orientation_between.cone")
     assert found == pytest.approx(2 * math.acos(abs(cosine)))

@@ -86,7 +86,7 @@ def test_however_many_properties_there_are_each_has_taken_the_clock_steps_that_a
     for row, end in zip(recorded, [*(r.time for r in recorded[1:]), recorded[-1].time + 9], strict=True):
         feed(rows, row)
         for time in range(row.time if rate is None else row.time + 1, end):
-            soonest = min(track.next for track in rows.tracks)
+            soonest = 1 + min(track.until for track in rows.tracks)
             assert time <= (rows.due() or NEVER) <= soonest
             rows.advance(time)
 

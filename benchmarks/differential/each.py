@@ -217,7 +217,7 @@ def _of_slices(session: Session, expected: Mapping[int, Judged], end: int) -> di
     [slices] = session.sliced
     assert isinstance(slices, Slices)
     found: dict[Any, Found] = {id_: Found("presumably_satisfied") for id_ in slices.ids.forgotten}
-    found |= {id_: Found(one.track.verdict.value) for id_, one in slices.ids.slices.items()}
+    found |= {id_: Found(one.verdict.value) for id_, one in slices.ids.slices.items()}
     found |= {id_: Found("violated", None, each.failure.time) for id_, each in slices.ids.violated.items()}
     for id_ in slices.ids.satisfied:
         of = expected[int(id_)]

@@ -156,7 +156,7 @@ class Later(Course):
         last = self.monitor
         self.begin(time)
         self._keep_ages(last)
-        self.verdict, self.decided_at, self.open_since = Verdict.NOT_STARTED, None, None
+        self.verdict, self.decided_at = Verdict.NOT_STARTED, None
         self._passed, self.scopes = (), tuple(map(Episodes, self.property.scopes))
 
     def _keep_ages(self, last: Monitor) -> None:

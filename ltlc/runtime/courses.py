@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Container, Iterable, Iterator, Sequence
 from copy import copy
 
-from ltlc.runtime.episodes import NOBODY, Episodes, Watchers, count_anew, forked, latest
+from ltlc.runtime.episodes import NOBODY, Episodes, Watchers, count_anew, latest
 from ltlc.runtime.properties import (
     Change,
     Failure,
@@ -32,12 +32,14 @@ class Course:
         "_invalid_last",
         "_passed",
         "_renewed",
+        "_since",
+        "_since_by_time",
+        "_since_step",
         "decided_at",
         "invalid_because",
         "is_settled",
         "judged_on",
         "monitor",
-        "open_since",
         "property",
         "scopes",
         "steps",
@@ -57,7 +59,8 @@ class Course:
         self.verdict = Verdict.NOT_STARTED
         self.steps = 0
         self.decided_at: Failure | None = None
-        self.open_since: Moment | None = None
+        self._since = self._since_step = 0
+        self._since_by_time = False
         self.is_settled = True
         self.scopes = tuple(map(Episodes, property_.scopes))
         self.judged_on: Sequence[Value] = ()
@@ -73,15 +76,16 @@ class Course:
         events = self.property.events
         self.watchers = Watchers(events, session) if events else NOBODY
 
-    def fork(self) -> Course:
-        """What goes on from here by itself, of a property no scope of which is open."""
-        other = Course.__new__(Course)
-        for name in Course.__slots__:
-            setattr(other, name, getattr(self, name))
-        other.monitor = forked(self.monitor)
-        other.scopes = tuple(map(copy, self.scopes))
-        other.watchers = self.watchers.fork()
-        return other
+    @property
+    def open_since(self) -> Moment | None:
+        """Since when something has been owed; None if nothing is."""
+        if self.verdict is not Verdict.PRESUMABLY_VIOLATED:
+            return None
+        return Moment(self._since_step, self._since, by_time=self._since_by_time)
+
+    def owe(self, step: int, time: int, *, by_time: bool = False) -> None:
+        """Something is owed from this moment on."""
+        self._since_step, self._since, self._since_by_time = step, time, by_time
 
     def hear(self, time: int, signals: Container[str]) -> None:
         """Messages come: the ages of these signals count anew, whatever the values.
@@ -120,12 +124,12 @@ class Course:
         return self.monitor.due + 1 if self.property.timed else NEVER
 
     @property
-    def next(self) -> int:
-        """When `hold` has something to do next, unless a step comes first."""
-        due = self.monitor.due + 1 if self.property.timed else NEVER
+    def until(self) -> int:
+        """Up to this time `hold` has nothing to do, unless a step comes first."""
+        last = self.monitor.due if self.property.timed else NEVER
         if self.property.events and self.decided_at is None:
-            due = min(due, self.watchers.due())
-        return due
+            last = min(last, self.watchers.due() - 1)
+        return last
 
     def deadline(self) -> int | None:
         """When time alone violates the property; None if it never does."""
@@ -225,7 +229,7 @@ class Course:
         self.judged_on = values
         previous = None
         if verdict is not self.verdict:
-            previous = self._change((state, self._asked(dues)), step, time, values)
+            previous = self._change((state, dues), step, time, values)
         if of.counts_bounds:
             self._count_bounds(dues)
         return previous
@@ -297,16 +301,13 @@ class Course:
 
         Most of the time all is well, and there is nothing to keep of the moment.
         """
-        previous, self.verdict = self.verdict, self.monitor.verdict
-        if self.verdict is Verdict.PRESUMABLY_SATISFIED:
-            self.open_since = None
-            return previous
-        moment = Moment(step, time, by_time=by_time)
-        if self.verdict is Verdict.PRESUMABLY_VIOLATED:
-            self.open_since = moment
-        else:
+        previous, verdict = self.verdict, self.monitor.verdict
+        if verdict is Verdict.PRESUMABLY_VIOLATED:
+            self.owe(step, time, by_time=by_time)
+        elif verdict is not Verdict.PRESUMABLY_SATISFIED:
+            moment = Moment(step, time, by_time=by_time)
             self.decided_at = self._failure(before, moment, values)
-            self.open_since = None
+        self.verdict = verdict
         return previous
 
     def _failure(
@@ -314,6 +315,8 @@ class Course:
     ) -> Failure:
         """What there is to know of the moment that decided the property."""
         of = self.property
+        if not moment.by_time:
+            before = (before[0], self._asked(before[1]))
         is_violated = self.monitor.verdict is Verdict.VIOLATED
         return Failure(
             moment.step,

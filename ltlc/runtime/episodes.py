@@ -82,6 +82,8 @@ class Watchers:
 
     def fork(self) -> Watchers:
         """Those that go on from here by themselves."""
+        if not self.machines:
+            return self
         other = copy(self)
         other.machines = [forked(machine) for machine in self.machines]
         return other
@@ -121,10 +123,9 @@ NOBODY = Watchers((), 0)
 
 def forked(monitor: Monitor) -> Monitor:
     """A monitor that goes on from here by itself, and counts by itself."""
-    other = copy(monitor)
+    other: Monitor = object.__new__(monitor.__class__)
     for name, value in vars(monitor).items():
-        if value.__class__ is deque:
-            setattr(other, name, value.copy())
+        setattr(other, name, value.copy() if value.__class__ is deque else value)
     return other
 
 

@@ -164,11 +164,10 @@ class PastEvent:
 
 def _dues(names: Sequence[str]) -> Callable[[Monitor], tuple[int, ...]]:
     """What takes the attributes `names` of a monitor."""
-    if len(names) != 1:
-        return attrgetter(*names) if names else lambda monitor: ()
+    if len(names) > 1:
+        return attrgetter(*names)
     # Of one attribute, `attrgetter` would give no tuple.
-    one = attrgetter(names[0])
-    return lambda monitor: (one(monitor),)
+    return lambda monitor: (getattr(monitor, names[0]),) if names else ()
 
 
 @dataclass(frozen=True, slots=True)

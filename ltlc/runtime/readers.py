@@ -48,8 +48,8 @@ class Readers:
 class Clocks:
     """The properties that time alone may change.
 
-    None changes before `soon`, unless it has a step first; of those that had no step
-    since it was worked out, none before `_next`. Both are bounds from below.
+    None changes up to `soon`, unless it has a step first; of those that had no step
+    since it was worked out, none up to `_next`. Both are bounds from below.
     """
 
     def __init__(self, tracks: Iterable[Track]) -> None:
@@ -69,19 +69,19 @@ class Clocks:
     def note(self, track: Track) -> None:
         """One of these properties has had a step, and may change sooner or later."""
         self._stepped.add(track)
-        if (next_ := track.next) < self.soon:
-            self.soon = next_
+        if (until := track.until) < self.soon:
+            self.soon = until
 
     def hold(self, time: int) -> list[Change]:
         """Take the clock steps up to and including `time`, in their order."""
-        if time < self.soon:
+        if time <= self.soon:
             return []
         tracks: Iterable[Track] = self._places
-        if time < self._next:
+        if time <= self._next:
             tracks = sorted(self._stepped, key=self._places.__getitem__)
         else:
             self._next = NEVER
         changes = [change for track in tracks for change in track.hold(time)]
-        self.soon = self._next = min([self._next, *(track.next for track in tracks)])
+        self.soon = self._next = min([self._next, *(track.until for track in tracks)])
         self._stepped.clear()
         return sorted(changes, key=lambda change: change.moment.time)

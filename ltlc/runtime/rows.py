@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from ltlc.runtime.properties import Change
 from ltlc.runtime.readers import Clocks, Readers, Stepped
@@ -13,14 +14,19 @@ from ltlc.runtime.ticks import Pace, Paces
 from ltlc.runtime.times import NEVER, seconds_text
 from ltlc.runtime.tracking import Track
 
+if TYPE_CHECKING:
+    from ltlc.runtime.slice_keys import Row
+    from ltlc.runtime.slice_steps import Slices
+
 
 @dataclass(frozen=True, slots=True)
 class Route:
     """Where messages on `topics` with samples of the readings `names` lead to.
 
     That is the `update` of the samples, the news, the properties that they concern, and
-    those of which the messages renew ages, those of these signals. Most messages have
-    no more than samples to be taken; the others concern something that `has_more`.
+    those of which the messages renew ages, those of these signals; and what they are to
+    those that are `sliced`. Most messages have no more than samples to be taken; the
+    others concern something that `has_more`.
     """
 
     names: tuple[str, ...]
@@ -29,6 +35,7 @@ class Route:
     news: tuple[int, ...]
     stepped: tuple[Stepped, ...]
     aged: tuple[tuple[Track, frozenset[str]], ...]
+    sliced: tuple[tuple[Slices, Row], ...]
     has_more: bool
 
 
@@ -68,7 +75,7 @@ class ByRows:
         self._readers = Readers(s for s in session.stepped if id(s[0]) in self._judged)
         self._sliced = [s for s in session.sliced if id(s.track) in self._judged]
         has_news = session.sampler.news(session.fields)
-        self._has_more = bool(self._sliced or session.paces or has_news)
+        self._has_more = bool(session.paces or has_news)
         self._soon = UNKNOWN
         self._clocks = Clocks(track for track, _ in self._readers.stepped)
         self._aging = self._aging_by_topic()
@@ -139,8 +146,10 @@ class ByRows:
             update = sampler.update(names, topics)
             concerned = self._readers.concerned(update.fresh, topics)
             news, aged = sampler.news(topics), tuple(self._aged(topics))
-            more = bool(self._has_more or update.arrays or aged)
-            route = Route(names, topics, update, news, concerned, aged, more)
+            rows = ((s, s.cut.row(names, topics)) for s in self._sliced)
+            sliced = tuple((slices, row) for slices, row in rows if row.concerns)
+            more = bool(self._has_more or update.arrays or aged or sliced)
+            route = Route(names, topics, update, news, concerned, aged, sliced, more)
             self._routes[names, also] = route
         return route
 
@@ -175,11 +184,12 @@ class ByRows:
         """Messages came in, whose samples `values` are as they are kept."""
         session = self.session
         if not are_counted:
+            messages = session.messages
             for topic in route.topics:
-                session.messages[topic] += 1
+                messages[topic] += 1
         changes: list[Change] = []
         is_first = False
-        if time >= self._soon or time < (session.time or 0):
+        if time > self._soon or time < (session.time or 0):
             is_first = session.began is None
             if not self._reach(time, changes):
                 return changes
@@ -188,9 +198,10 @@ class ByRows:
             return changes
         if route.names:
             session.steps += 1
-        route.update.take(time, values)
+        known = session.sampler.known
+        route.update.take(known, time, values)
         if route.stepped:
-            self._judge(time, route.stepped, changes, route.topics)
+            self._judge(time, known, route.stepped, changes, route.topics)
         if route.aged:
             self._renew(time, (track for track, _ in route.aged), changes)
         if is_first:
@@ -211,11 +222,11 @@ class ByRows:
         return True
 
     def _next(self) -> int:
-        """Before this, nothing is due before a message, and the run goes on."""
+        """Up to this, nothing is due before a message, and the run goes on."""
         if self.session.paces is not None:
             return UNKNOWN
-        due = (slices.due() for slices in self._sliced)
-        return min(self._clocks.soon, self.session.end + 1, *due)
+        soon = (slices.soon for slices in self._sliced)
+        return min(self._clocks.soon, self.session.end, *soon)
 
     def _take_more(
         self,
@@ -230,9 +241,9 @@ class ByRows:
             session.sampler.count(route.update.arrays, values)
         for track, heard in route.aged:
             track.hear(time, heard)
-        for slices in self._sliced:
-            changes += slices.take(time, route.names, route.topics, values)
-            if slices.due() < self._soon or session.end + 1 < self._soon:
+        for slices, row in route.sliced:
+            slices.take(time, row, values, changes)
+            if slices.soon < self._soon or session.end < self._soon:
                 self._soon = self._next()
         if session.paces is not None:
             self._keep(session.paces, time, route, values, changes)
@@ -283,7 +294,7 @@ class ByRows:
 
         None comes before, unless a step comes first.
         """
-        due = min([self._clocks.soon, *(slices.due() for slices in self._sliced)])
+        due = 1 + min([self._clocks.soon, *(slices.soon for slices in self._sliced)])
         return due if due <= self.session.end and due < NEVER else None
 
     def _pass(self, time: int) -> list[Change]:
@@ -304,7 +315,7 @@ class ByRows:
             changes += self._tick(pace)
             # Where the run is still to begin, another property may say when it ends.
             if pace.is_settled and (session.has_begun or session.plan.timeout is None):
-                until = min(time, session.end + 1, self._clocks.soon)
+                until = min(time, session.end + 1, self._clocks.soon + 1)
                 # The last is done: slopes ask when the sample before was taken.
                 self._repeat(pace, max(0, pace.ticks.before(until) - 1))
         return changes + self._clocks.hold(min(time, session.end))
@@ -341,14 +352,16 @@ class ByRows:
         if self.session.paces is None:
             stepped = self._readers.stepped
             waiting = [s for s in stepped if s[0].property.from_session]
-            self.session.sampler.hear(())
+            sampler = self.session.sampler
+            sampler.hear(())
             silent = [s for s in waiting if not s[0].steps and not s[0].invalid]
-            self._judge(time, silent, changes)
+            self._judge(time, sampler.known, silent, changes)
             changes += [c for slices in self._sliced for c in slices.first_step(time)]
 
     def _judge(
         self,
         time: int,
+        known: list[Value],
         stepped: Sequence[Stepped],
         changes: list[Change],
         topics: frozenset[str] = frozenset(),
@@ -358,7 +371,7 @@ class ByRows:
         Messages have come on `topics`; to a property that still waits they are lost.
         """
         for track, window in stepped:
-            values = window.values()
+            values = window.values(known)
             if track.steps or None not in values or track.property.is_ready(values):
                 previous = track.step(time, values)
                 if previous is not None:  # as at the first step
@@ -373,7 +386,7 @@ class ByRows:
         """The run begins with its first step; from then on its end is known."""
         if not self.session.has_begun:
             self.session.begin_run(time)
-            self._soon = min(self._soon, self.session.end + 1)
+            self._soon = min(self._soon, self.session.end)
 
     def _note(self, track: Track) -> None:
         """A property with clocks has had a step, and may change sooner or later."""
@@ -401,7 +414,7 @@ class ByRows:
         self.session.steps += 1
         heard = frozenset(pace.heard)
         stepped = [s for s in pace.tick() if id(s[0]) in self._judged]
-        self._judge(time, stepped, changes, heard)
+        self._judge(time, pace.sampler.known, stepped, changes, heard)
         self._renew(time, (track for track, _ in stepped), changes)
         return changes
 

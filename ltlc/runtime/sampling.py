@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import dataclass
-from functools import partial
 from math import isnan
 from operator import itemgetter
 from typing import Any
@@ -106,18 +105,19 @@ class Derived:
 
 
 class Samples:
-    """The last samples of one signal: so many values, and the times of two.
+    """Where the last samples of one signal stand in a list of all that is `known`.
 
-    The values stand in a list of all signals from the place `first` on, the latest
-    first; None where there is none yet. What is `looked_at` as an array stands there,
-    too, and the slope of the signal; without that, no times are kept.
+    There are so many values, from the place `first` on, the latest first; None where
+    there is none yet. What is `looked_at` as an array stands there, too, and the slope
+    of the signal, with the times of two samples; without that, no times are kept.
     """
 
-    __slots__ = ("_arrays", "_known", "_slope", "depth", "first", "times")
+    __slots__ = ("_arrays", "_slope", "_times", "depth", "first")
 
     def __init__(self, known: list[Value], looked_at: Collection[Wanted]) -> None:
+        """Have places at the end of the list, which grows."""
         depth = max([1, *map(_reach, looked_at)])
-        self._known, self.depth, self.first = known, depth, len(known)
+        self.depth, self.first = depth, len(known)
         known += [None] * depth
         self._arrays: dict[int, int] = {}
         for wanted in looked_at:
@@ -125,38 +125,38 @@ class Samples:
                 self._arrays[wanted.ago] = len(known)
                 known.append(None)
         has_slope = any(isinstance(wanted, Slope) for wanted in looked_at)
-        self._slope = len(known) if has_slope else None
-        known += [None] * has_slope
-        self.times: tuple[int, ...] = ()
+        self._slope, self._times = (len(known), len(known) + 1) if has_slope else (0, 0)
+        known += [None, ()] * has_slope
 
-    @property
-    def values(self) -> list[Value]:
+    def values(self, known: list[Value]) -> list[Value]:
         """Those that there are, the latest first."""
-        kept = self._known[self.first : self.first + self.depth]
+        kept = known[self.first : self.first + self.depth]
         return [value for value in kept if value is not None]
+
+    def times(self, known: list[Value]) -> tuple[int, ...]:
+        """Those of the last two, the latest first, if the slope is looked at."""
+        found: tuple[int, ...] = known[self._times] if self._times else ()
+        return found
 
     def place(self, wanted: Input | Recent | Slope) -> int:
         """Where the value of `wanted`, which is of this signal, stands."""
         if isinstance(wanted, Input):
             return self.first + wanted.ago
-        if isinstance(wanted, Recent):
-            return self._arrays[wanted.ago]
-        assert self._slope is not None
-        return self._slope
+        return self._arrays[wanted.ago] if isinstance(wanted, Recent) else self._slope
 
-    def add(self, time: int, value: Value) -> None:
+    def add(self, known: list[Value], time: int, value: Value) -> None:
         """Take a sample; NaN is one."""
-        values, first = self._known, self.first
-        del values[first + self.depth - 1]
-        values.insert(first, value)
+        first = self.first
+        del known[first + self.depth - 1]
+        known.insert(first, value)
         for ago, place in self._arrays.items():
-            if values[first + ago] is not None:
-                values[place] = tuple(values[first : first + ago + 1][::-1])
-        if self._slope is None:
+            if known[first + ago] is not None:
+                known[place] = tuple(known[first : first + ago + 1][::-1])
+        if not self._times:
             return
-        self.times = (time, *self.times[:1])
-        if len(self.times) > 1:
-            values[self._slope] = _slope(value - values[first + 1], *self.times)
+        known[self._times] = times = (time, *known[self._times][:1])
+        if len(times) > 1:
+            known[self._slope] = _slope(value - known[first + 1], *times)
 
 
 def _slope(change: float, last: int, before: int) -> float:
@@ -168,8 +168,8 @@ class Window:
     """What is looked at of some signals: the values of `inputs`, in their order.
 
     Those are samples of `signals`; of `topics` it wants to know the news only. All of
-    it comes from the topics `read`. Of these `values` one that is missing is None; what
-    has a value once, keeps one.
+    it comes from the topics `read`. Of the `values` of what is known one that is
+    missing is None; what has a value once, keeps one.
     """
 
     __slots__ = ("inputs", "read", "signals", "topics", "values")
@@ -183,8 +183,7 @@ class Window:
         )
         of_signals = (sampler.topics[name] for name in self.signals)
         self.read = self.topics.union(*of_signals)
-        take = _taker([sampler.place(wanted) for wanted in self.inputs])
-        self.values: Callable[[], Sequence[Value]] = partial(take, sampler.known)
+        self.values = _taker([sampler.place(wanted) for wanted in self.inputs])
 
 
 def _taker(places: Sequence[int]) -> Callable[[list[Value]], Sequence[Value]]:
@@ -192,7 +191,7 @@ def _taker(places: Sequence[int]) -> Callable[[list[Value]], Sequence[Value]]:
     if len(places) > 1:
         return itemgetter(*places)
     # Of one place, `itemgetter` would give no sequence.
-    return itemgetter(slice(places[0], places[0] + 1) if places else slice(0))
+    return (lambda known: (known[places[0]],)) if places else (lambda known: ())
 
 
 Computed = tuple[Samples, Callable[..., Value], Window, Callable[..., bool] | None]
@@ -203,38 +202,41 @@ Computed = tuple[Samples, Callable[..., Value], Window, Callable[..., bool] | No
 class Update:
     """What new samples of some readings lead to, `fresh` being all that may have one.
 
-    Samples go, by the place of their value, to places in the list of all that is
-    `known` if only the latest is ever looked at (`plain`), else to others (`deep`).
-    `arrays` are those of numbers; `derived` are those that are computed.
+    Samples go, by the place of their value, to places in the list of all that is known
+    if only the latest is ever looked at (`plain`), else to others (`deep`). `arrays`
+    are those of numbers; `derived` are those that are computed.
     """
 
     fresh: frozenset[str]
-    known: list[Value]
     plain: tuple[tuple[int, int], ...]
     deep: tuple[tuple[int, Samples], ...]
     arrays: tuple[tuple[int, str], ...]
     derived: tuple[Computed, ...]
 
-    def take(self, time: int, values: Sequence[Value]) -> None:
+    def take(self, known: list[Value], time: int, values: Sequence[Value]) -> None:
         """Add samples of the readings and of all that is computed from them."""
-        known = self.known
         for place, target in self.plain:
             known[target] = values[place]
         if self.deep or self.derived:
-            self._take_deep(time, values)
+            self._take_deep(known, time, values)
 
-    def _take_deep(self, time: int, values: Sequence[Value]) -> None:
+    def _take_deep(
+        self, known: list[Value], time: int, values: Sequence[Value]
+    ) -> None:
         """Add those that are computed, or of which more than the latest is kept."""
         for place, samples in self.deep:
-            samples.add(time, values[place])
+            samples.add(known, time, values[place])
         for samples, compute, window, when in self.derived:
-            parts = window.values()
+            parts = window.values(known)
             if None not in parts and (when is None or when(*parts)):
-                samples.add(time, compute(*parts))
+                samples.add(known, time, compute(*parts))
 
 
 class Sampler:
-    """The samples of all signals; a sample of a part is one of what it is part of."""
+    """The samples of all signals; a sample of a part is one of what it is part of.
+
+    What is `known` of them is a list; others with the same places can be kept beside.
+    """
 
     def __init__(
         self,
@@ -290,7 +292,7 @@ class Sampler:
     def _hold(self, samples: Samples, constant: Value) -> None:
         """A signal that is computed from nothing has always had its value."""
         for _ in range(samples.depth):
-            samples.add(0, constant)
+            samples.add(self.known, 0, constant)
 
     def window(self, inputs: Iterable[Wanted]) -> Window:
         """A look at `inputs`."""
@@ -302,16 +304,18 @@ class Sampler:
             return self._news[wanted.signal]
         return self.samples[wanted.signal].place(wanted)
 
+    def values(self, name: str) -> list[Value]:
+        """The last samples of a signal, the latest first."""
+        return self.samples[name].values(self.known)
+
     def news(self, topics: Iterable[str]) -> tuple[int, ...]:
         """The places of what is new where messages come in on `topics`."""
         return tuple(p for topic in topics for p in self._news_of.get(topic, ()))
 
     def hear(self, news: tuple[int, ...]) -> None:
         """What stands at these places is new, and nothing else."""
-        for place in self.heard:
-            self.known[place] = False
-        for place in news:
-            self.known[place] = True
+        mark(self.known, self.heard, is_new=False)
+        mark(self.known, news, is_new=True)
         self.heard = news
 
     def converted(
@@ -347,7 +351,7 @@ class Sampler:
         new sample, or have none at all.
         """
         update = self.update(names, topics)
-        update.take(time, values)
+        update.take(self.known, time, values)
         return update.fresh
 
     def update(self, names: tuple[str, ...], topics: frozenset[str]) -> Update:
@@ -366,7 +370,6 @@ class Sampler:
         readings = list(enumerate(self.samples[name] for name in names))
         return Update(
             frozenset(fresh),
-            self.known,
             tuple((place, of.first) for place, of in readings if of.depth == 1),
             tuple((place, of) for place, of in readings if of.depth > 1),
             tuple((p, n) for p, n in enumerate(names) if n in self.not_measured),
@@ -384,6 +387,12 @@ _CONVERSIONS: dict[str, Callable[[Value], Value]] = {
     "array of booleans": lambda values: tuple(map(bool, elements_of(values))),
     "array of strings": tuple,
 }
+
+
+def mark(known: list[Value], news: tuple[int, ...], *, is_new: bool) -> None:
+    """Whether what stands at these places of what is known is new."""
+    for place in news:
+        known[place] = is_new
 
 
 def topics_of(signals: Iterable[Reading | Derived]) -> dict[str, frozenset[str]]:

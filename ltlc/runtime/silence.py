@@ -18,7 +18,7 @@ def waiting_for(session: Session, track: Track) -> list[str]:
     inputs = track.property.inputs
     missing: list[Wanted]
     if track.slices is None:
-        values = sampler.window(inputs).values()
+        values = sampler.window(inputs).values(sampler.known)
         waited = zip(inputs, values, track.property.waits, strict=True)
         missing = [i for i, value, waits in waited if waits and value is None]
     else:
@@ -45,8 +45,7 @@ def absent(session: Session, name: str) -> list[Reading]:
 
 
 def _absent(session: Session, sampler: Sampler, name: str) -> list[Reading]:
-    samples = sampler.samples
-    return [r for r in _readings(session, name) if not samples[r.name].values]
+    return [r for r in _readings(session, name) if not sampler.values(r.name)]
 
 
 def topics(session: Session, track: Track) -> set[str]:

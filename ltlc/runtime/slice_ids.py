@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Collection
 from dataclasses import dataclass
 
 from ltlc.runtime.courses import Course
-from ltlc.runtime.properties import Failure
+from ltlc.runtime.episodes import Episodes, forked
+from ltlc.runtime.properties import Failure, MonitoredProperty
 from ltlc.runtime.sampling import Value
 from ltlc.runtime.slice_keys import Id, id_of
 from ltlc.runtime.times import NEVER
@@ -15,15 +17,13 @@ from ltlc.semantics.verdicts import Verdict
 NOTHING_HEARD: frozenset[str] = frozenset()
 
 
-class Slice:
+class Slice(Course):
     """The run of one id, as far as it is known.
 
-    track: what is known of the property in it
-    samples, times: those of its own signals, while those of others are looked at
-    is_full: whether all that the property reads has a value
+    known: its samples, and those that all slices share
     counted: the verdict as which it was counted
     number: which one it is of those that were kept, 0 before it is
-    scheduled: when time may change it, as it was noted
+    scheduled: up to when time does not change it, as it was noted
     lacks_beginning: whether messages before its first one may have found no place
     more: how many others go on like it, and are not kept
     latest, heard: what the next tick sees of it, where there are ticks
@@ -33,30 +33,41 @@ class Slice:
         "counted",
         "heard",
         "id",
-        "is_full",
+        "known",
         "lacks_beginning",
         "latest",
         "more",
         "number",
-        "samples",
         "scheduled",
-        "times",
-        "track",
     )
 
-    def __init__(self, id_: Id, track: Course, lacks_beginning: bool) -> None:
+    def __init__(
+        self,
+        id_: Id,
+        property_: MonitoredProperty,
+        invalid_because: Counter[str],
+        known: list[Value],
+        session: int = 0,
+    ) -> None:
+        super().__init__(property_, invalid_because, session)
         self.id = id_
-        self.track = track
-        self.samples: list[Value] = []
-        self.times: tuple[tuple[int, ...], ...] = ()
-        self.is_full = False
+        self.known = known
         self.counted = Verdict.NOT_STARTED
-        self.number = 0
+        self.number = self.more = 0
         self.scheduled = NEVER
-        self.lacks_beginning = lacks_beginning
-        self.more = 0
+        self.lacks_beginning = False
         self.latest: dict[str, Value] | None = None
         self.heard = NOTHING_HEARD
+
+    def fork(self) -> Slice:
+        """What goes on from here by itself, of a property no scope of which opened."""
+        other = Slice.__new__(Slice)
+        for name in (*Course.__slots__, *Slice.__slots__):
+            setattr(other, name, getattr(self, name))
+        other.monitor = forked(self.monitor)
+        other.scopes = tuple(map(Episodes, self.property.scopes))
+        other.watchers = self.watchers.fork()
+        return other
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,6 +85,7 @@ class Ids:
     slices: those that are not decided
     violated, satisfied: the ids of the others
     forgotten: all others that came, if there is no limit; `births` counts slices
+    calm: the verdict if nothing is owed or violated
     messages: how many messages had an id; of others, `without_id` counts those that had
     none, `left_out` those of which the id found no place
     """
@@ -85,7 +97,7 @@ class Ids:
         self.satisfied: set[Id] = set()
         self.forgotten: set[Id] = set()
         self.births = self.messages = self.without_id = self.left_out = 0
-        self._has_started = False
+        self.calm = Verdict.NOT_STARTED
         self._owed = self._failed = 0
 
     def counted(self, value: Value) -> Id | None:
@@ -115,11 +127,6 @@ class Ids:
         """How many ids came, if there is no limit."""
         return self._kept() + len(self.forgotten)
 
-    def forget(self, id_: Id) -> None:
-        """A slice is as new, and dropped."""
-        if self.limit is None:
-            self.forgotten.add(id_)
-
     def keep(self, one: Slice) -> None:
         """A slice is kept from now on."""
         self.births += 1
@@ -131,24 +138,23 @@ class Ids:
         """These came elsewhere; if a slice has started that is not kept, it is well."""
         decided = self.satisfied.union(self.violated)
         self.forgotten.update(id_ for id_ in ids if id_ not in decided)
-        self._has_started |= has_started
+        if has_started:
+            self.calm = Verdict.PRESUMABLY_SATISFIED
 
-    def count(self, one: Slice) -> bool:
-        """Count a slice by its verdict; whether that is new."""
-        verdict = one.track.verdict
-        if verdict is one.counted:
-            return False
-        self._owed += verdict is Verdict.PRESUMABLY_VIOLATED
-        self._owed -= one.counted is Verdict.PRESUMABLY_VIOLATED
-        self._failed += verdict is Verdict.VIOLATED
-        self._failed -= one.counted is Verdict.VIOLATED
+    def count(self, one: Slice) -> None:
+        """Count a slice by its verdict."""
+        verdict, before = one.verdict, one.counted
         one.counted = verdict
-        self._has_started = True
-        return True
+        self._owed += verdict is Verdict.PRESUMABLY_VIOLATED
+        self._owed -= before is Verdict.PRESUMABLY_VIOLATED
+        self._failed += verdict is Verdict.VIOLATED
+        self._failed -= before is Verdict.VIOLATED
+        if verdict is not Verdict.NOT_STARTED:
+            self.calm = Verdict.PRESUMABLY_SATISFIED
 
     def decide(self, one: Slice, failure: Failure) -> None:
         """A slice was decided, and dropped; its id is kept."""
-        if one.track.verdict is Verdict.VIOLATED:
+        if one.verdict is Verdict.VIOLATED:
             self.violated[one.id] = Violation(failure, one.lacks_beginning)
         else:
             self.satisfied.add(one.id)
@@ -167,10 +173,7 @@ class Ids:
         """That of the whole: never satisfied, for another id may come."""
         if self._failed:
             return Verdict.VIOLATED
-        if self._owed:
-            return Verdict.PRESUMABLY_VIOLATED
-        is_well = self._has_started
-        return Verdict.PRESUMABLY_SATISFIED if is_well else Verdict.NOT_STARTED
+        return Verdict.PRESUMABLY_VIOLATED if self._owed else self.calm
 
 
 class Messages(Ids):
@@ -217,7 +220,7 @@ class Messages(Ids):
 
     def decide(self, one: Slice, failure: Failure) -> None:
         """An instance was decided, and dropped."""
-        if one.track.verdict is Verdict.VIOLATED:
+        if one.verdict is Verdict.VIOLATED:
             self.violated[one.id] = Violation(failure, False, one.more)
         else:
             self._well += 1 + one.more

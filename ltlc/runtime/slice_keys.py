@@ -10,7 +10,6 @@ from uuid import UUID
 from ltlc.runtime.properties import MonitoredProperty
 from ltlc.runtime.sampling import (
     Derived,
-    New,
     Reading,
     Sampler,
     Update,
@@ -29,9 +28,9 @@ def id_of(value: Value) -> Id | None:
     if value.__class__ is not float:
         found: Id = value
         return found
-    if math.isnan(value):
-        return None
-    return int(value) if value.is_integer() else float(value)
+    if value.is_integer():
+        return int(value)
+    return None if math.isnan(value) else float(value)
 
 
 def bytes_text(value: bytes) -> str:
@@ -110,6 +109,11 @@ class Row:
     own: dict[tuple[str, ...], Part] = field(default_factory=dict)
     only: tuple[int, Part] | None = None
 
+    @property
+    def concerns(self) -> bool:
+        """Whether any slice gets something of such rows."""
+        return bool(self.keys or self.shared.topics)
+
 
 SliceMessage = tuple[Id, Part, Sequence[Value]]
 """A message of a slice, with its values."""
@@ -121,15 +125,14 @@ Counted = Callable[[Value], Id | None]
 class Cut:
     """How rows are cut into messages of slices, of a property that reads `signals`.
 
-    One sampler serves all slices: it has the samples of one of them at a time, which
-    stand at the `places` of all that is known; what others shared stands before them.
+    The `sampler` knows what a slice does before its first message, and says where it
+    keeps samples: those that all share, and from the place `own` on its own.
 
     keys: by the topics that they slice
     window: what the property looks at
     read: the topics of the messages that are judged
     deep: of a slice's own samples those that are more than the latest
     ages: the signals of which the property asks for ages, `own_ages` those of slices
-    new: what is known of a slice before its first message
     """
 
     def __init__(
@@ -158,32 +161,30 @@ class Cut:
         ).difference(marked)
         self.own_ages = frozenset(name for name in self.ages if self.is_own(name))
         self._topic = {s.name: s.topic for s in signals if isinstance(s, Reading)}
-        own = [s for name, s in self.sampler.samples.items() if self.is_own(name)]
-        news = {i.signal for i in inputs if isinstance(i, New)}
-        end = len(self.sampler.known) - len(news)
-        self.places = slice(min((s.first for s in own), default=end), end)
+        samples, known = self.sampler.samples, self.sampler.known
+        own = [s for name, s in samples.items() if self.is_own(name)]
+        self.own = min((s.first for s in own), default=len(known))
         self.deep = [s for s in own if s.depth > 1]
-        self._has_id = variable in self.sampler.samples
+        self._id = samples[variable].first if variable in samples else None
         self._rows: dict[tuple[tuple[str, ...], frozenset[str]], Row] = {}
-        self.new: list[Value] = [None] * (self.places.stop - self.places.start)
         for key in keys:
             if key.gone is not None:
-                self.new[self._place(key.gone)] = False
-
-    def _place(self, signal: str) -> int:
-        """Where the last sample of a slice's own signal stands among its samples."""
-        return self.sampler.samples[signal].first - self.places.start
+                known[samples[key.gone].first] = False
 
     def is_own(self, signal: str) -> bool:
         """Whether each slice has samples of the signal of its own."""
         return not self.sampler.topics[signal].isdisjoint(self.keys)
 
-    def samples(self, id_: Id) -> list[Value]:
-        """Those of a slice before its first message: there is no more than its id."""
-        found = self.new.copy()
-        if self._has_id:
-            found[self._place(self.variable)] = id_
+    def known(self, id_: Id) -> list[Value]:
+        """What a slice knows before its first message: what all share, and its id."""
+        found = self.sampler.known.copy()
+        if self._id is not None:
+            found[self._id] = id_
         return found
+
+    def share(self, known: list[Value]) -> None:
+        """What all share has changed, and so has what a slice knows."""
+        known[: self.own] = self.sampler.known[: self.own]
 
     def row(self, names: tuple[str, ...], topics: frozenset[str]) -> Row:
         """What rows of samples of `names` with messages on `topics` are to slices."""
@@ -219,19 +220,16 @@ class Cut:
         )
         taken = tuple(names[place] for place in places)
         found, window = self.sampler.update(taken, topics), self.window
-        own = range(self.places.start, self.places.stop)
+        own, deep, derived = self.own, found.deep, found.derived
         update = Update(
             found.fresh,
-            found.known,
-            tuple((places[p], to) for p, to in found.plain if (to in own) is is_own),
-            tuple(
-                (places[p], to) for p, to in found.deep if (to.first in own) is is_own
-            ),
+            tuple((places[p], to) for p, to in found.plain if (to >= own) is is_own),
+            tuple((places[p], to) for p, to in deep if (to.first >= own) is is_own),
             (),
-            tuple(each for each in found.derived if (each[0].first in own) is is_own),
+            tuple(each for each in derived if (each[0].first >= own) is is_own),
         )
         is_step = (
-            (self._has_id and not topics.isdisjoint(self.keys))
+            (self._id is not None and not topics.isdisjoint(self.keys))
             or not self._opening.isdisjoint(topics)
             or not window.signals.isdisjoint(found.fresh)
             or not window.topics.isdisjoint(topics)

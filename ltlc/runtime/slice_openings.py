@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections import Counter
 from operator import attrgetter
 
-from ltlc.runtime.courses import Course
 from ltlc.runtime.episodes import state_of
 from ltlc.runtime.slice_ids import Messages, Slice
 from ltlc.runtime.slice_keys import Opener
+from ltlc.runtime.times import NEVER
 from ltlc.semantics.verdicts import Verdict
 
 
@@ -20,12 +20,12 @@ class Openings:
     That all instances say what `always (new s implies P)` says: Coq, `each_step`.
     """
 
-    def __init__(self, opener: Opener, messages: Messages, track: Course) -> None:
+    def __init__(self, opener: Opener, messages: Messages, before: Slice) -> None:
         self.opener = opener
         self.messages = messages
-        self.before = Slice(0, track, lacks_beginning=False)
-        self.before.number = -1  # it is none of those that are kept
-        is_timed = track.property.timed
+        self.before = before
+        before.number = -1  # it is none of those that are kept
+        is_timed = before.property.timed
         self._quick = attrgetter("state", "due") if is_timed else attrgetter("state")
         self._uncounted: Counter[str] = Counter()
 
@@ -34,10 +34,9 @@ class Openings:
         number = self.messages.number()
         if not self.messages.find_place(number):
             return None
-        track = self.before.track.fork()
-        track.verdict, track.invalid_because = Verdict.NOT_STARTED, self._uncounted
-        one = Slice(number, track, lacks_beginning=False)
-        one.is_full = self.before.is_full
+        one = self.before.fork()
+        one.id, one.invalid_because, one.scheduled = number, self._uncounted, NEVER
+        one.verdict, one.counted = Verdict.NOT_STARTED, self.messages.calm
         self.messages.keep(one)
         return one
 
@@ -51,13 +50,13 @@ class Openings:
     def alike(self) -> list[Slice]:
         """Those instances that go on like an earlier one, which now stands for them."""
         # Clocks that were set at different times tell most of them apart.
-        monitors = [one.track.monitor for one in self.messages.slices.values()]
+        monitors = [one.monitor for one in self.messages.slices.values()]
         if len(set(map(self._quick, monitors))) == len(monitors):
             return []
         first: dict[tuple[object, ...], Slice] = {}
         found = []
         for one in self.messages.slices.values():
-            earlier = first.setdefault(state_of(one.track.monitor), one)
+            earlier = first.setdefault(state_of(one.monitor), one)
             if earlier is not one:
                 self.messages.merge(earlier, one)
                 found.append(one)

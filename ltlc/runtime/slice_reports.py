@@ -109,12 +109,12 @@ class ToldSlices:
         now = self.session.time
         found = []
         for one in self.ids.slices.values():
-            since, deadline = one.track.open_since, None
+            since, deadline = one.open_since, None
             if since is None:
                 continue
-            deadline = one.track.deadline()
+            deadline = one.deadline()
             left = None if deadline is None or now is None else deadline - 1 - now
-            opened = latest(one.track.scopes)
+            opened = latest(one.scopes)
             found.append(Owed(one.id, opened, since, left, one.lacks_beginning))
         return nsmallest(
             MOST, found, key=lambda each: NEVER if each.left is None else each.left
@@ -155,12 +155,12 @@ class ToldSlices:
     def _owed_in_all(self) -> int:
         """For how many ids something is owed."""
         slices = self.ids.slices.values()
-        return sum(one.track.open_since is not None for one in slices)
+        return sum(one.open_since is not None for one in slices)
 
     def _waiting(self) -> int:
         """How many slices have had no step."""
         slices = self.ids.slices.values()
-        return sum(one.counted is Verdict.NOT_STARTED for one in slices)
+        return sum(one.verdict is Verdict.NOT_STARTED for one in slices)
 
     def remarks(self) -> list[str]:
         """What else there is to say: what is owed, what came, what was left out."""

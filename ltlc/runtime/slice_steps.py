@@ -7,7 +7,7 @@ from heapq import heappop, heappush
 
 from ltlc.runtime.courses import Course
 from ltlc.runtime.properties import Change, Moment
-from ltlc.runtime.sampling import Value
+from ltlc.runtime.sampling import Value, mark
 from ltlc.runtime.session import Session
 from ltlc.runtime.slice_ids import Ids, Slice
 from ltlc.runtime.slice_keys import Cut, Id, Key, Part, Row, id_of
@@ -29,6 +29,7 @@ class Slices(ToldSlices):
 
     Steps of the property are those of all slices, in their order. Where there are
     `openings`, messages open instances: slices that have all that comes from there on.
+    Up to `soon`, no clock step comes, unless a step comes first.
     """
 
     def __init__(
@@ -42,15 +43,13 @@ class Slices(ToldSlices):
     ) -> None:
         super().__init__(track, session, cut, ids, as_new)
         self.openings = openings
+        self.soon = NEVER
+        self._look = cut.window.values
+        self._has_ages = bool(cut.ages)
         self._begins = 0
-        self._names: tuple[str, ...] | None = None
-        self._topics: frozenset[str] | None = None
-        self._row: Row
         self._is_recounted = False
         self._goes_by_time = track.property.timed or bool(track.property.events)
-        self._no_times: tuple[tuple[int, ...], ...] = ((),) * len(cut.deep)
         self._last_heard: dict[str, int] = {}
-        self._loaded: Slice | None = None
         self._can_reuse = not (track.property.scopes or track.property.kept)
         self._spare: Slice | None = None
         self._due: list[tuple[int, int, Slice]] = []
@@ -69,49 +68,38 @@ class Slices(ToldSlices):
         """The session begins."""
         self._begins = time
         if self.openings is not None:
-            self.openings.before.track.begin(time)
+            self.openings.before.begin(time)
 
     def first_step(self, time: int) -> list[Change]:
         """Step what begins with the session and has not: no message was a step."""
-        if self.openings is None or not self.track.property.from_session:
+        if self.openings is None:
             return []
-        before = self.openings.before
-        if not before.track.steps and not before.track.invalid:
-            self._step(time, before, ())
+        before, changes = self.openings.before, list[Change]()
+        if self._begins_now(before):
+            self._step(time, before)
             self._settle(before)
-        return self._tell(time)
+        self._tell(time, changes)
+        return changes
 
     def take(
-        self,
-        time: int,
-        names: tuple[str, ...],
-        topics: frozenset[str],
-        values: Sequence[Value],
-    ) -> list[Change]:
-        """Samples of `names` came in, and messages on `topics`; all is held to then."""
-        if names is not self._names or topics is not self._topics:
-            self._names, self._topics = names, topics
-            self._row = self.cut.row(names, topics)
-        row = self._row
-        if row.only is not None:
-            self._take_one(time, *row.only, values)
-        else:
-            self._take_all(time, row, values)
-        return self._tell(time) if self._is_recounted or self.openings else []
-
-    def _take_one(
-        self, time: int, place: int, part: Part, values: Sequence[Value]
+        self, time: int, row: Row, values: Sequence[Value], changes: list[Change]
     ) -> None:
-        """A row is a message of the slice with the id at a place, and nothing else."""
-        value = values[place]
-        # Most values are ids; of bytes, the id has yet to be made.
-        one = self.ids.slices.get(value)
-        if one is not None:
-            self.ids.messages += 1
-        elif (id_ := self.ids.counted(value)) is not None:
-            one = self.ids.slices.get(id_) or self._new(time, id_)
-        if one is not None:
-            self._give(time, one, part, values)
+        """Samples and messages came in, all is held to then; `changes` grows."""
+        if row.only is None:
+            self._take_all(time, row, values)
+        else:  # most rows are a message of one slice, and nothing else
+            place, part = row.only
+            value, ids = values[place], self.ids
+            # Most values are ids; of bytes, the id has yet to be made.
+            one = ids.slices.get(value)
+            if one is not None:
+                ids.messages += 1
+            elif (id_ := ids.counted(value)) is not None:
+                one = ids.slices.get(id_) or self._new(time, id_)
+            if one is not None:
+                self._give(time, one, part, values)
+        if self._is_recounted or self.openings is not None:
+            self._tell(time, changes)
 
     def _take_all(self, time: int, row: Row, values: Sequence[Value]) -> None:
         """A row has messages of some slices, of all, or of none."""
@@ -141,13 +129,12 @@ class Slices(ToldSlices):
     def _share(self, time: int, part: Part, given: Sequence[Value]) -> None:
         """Take what all slices share."""
         self._last_heard |= dict.fromkeys(part.aged, time)
-        self._hear(part.news)
-        part.update.take(time, given)
-
-    def _hear(self, news: tuple[int, ...]) -> None:
-        """What stands at these places is new: values may be latched because of that."""
-        if self.cut.sampler.heard is not news:
-            self.cut.sampler.hear(news)
+        self.cut.sampler.hear(part.news)
+        part.update.take(self.cut.sampler.known, time, given)
+        self.cut.sampler.hear(())
+        if self.cut.keys:
+            for one in self.ids.slices.values():
+                self.cut.share(one.known)
 
     def _miss(self, time: int, key: Key, name: str, here: set[Id | None]) -> None:
         """A message came with the ids that are `here`: all others are gone."""
@@ -162,10 +149,6 @@ class Slices(ToldSlices):
     def _is_before(self, one: Slice) -> bool:
         """Whether this is no slice, but the run before any instance."""
         return self.openings is not None and one is self.openings.before
-
-    def _counts(self, one: Slice) -> bool:
-        """Whether the steps of a slice are those of the property."""
-        return self.openings is None or one is self.openings.before
 
     # Slices begin.
 
@@ -182,28 +165,26 @@ class Slices(ToldSlices):
         """The slice of an id begins; None if it is decided, or finds no place."""
         if not self.ids.find_place(id_):
             return None
-        one = self._born(time, id_)
+        one, self._spare = self._spare, None
+        if one is None:
+            one = self._born(time, id_)
+        else:
+            one.id, one.known = id_, self.cut.known(id_)
+            one.steps, one.verdict = 0, Verdict.NOT_STARTED
+        one.counted, one.lacks_beginning = self.ids.calm, self.ids.left_out > 0
         if id_ in self.ids.forgotten:  # and all was well
-            one.counted = one.track.verdict = Verdict.PRESUMABLY_SATISFIED
+            one.verdict = Verdict.PRESUMABLY_SATISFIED
         return one
 
     def _born(self, time: int, id_: Id) -> Slice:
         """A slice begins: ages of what is its own count from now."""
-        if self._spare is not None:
-            one, self._spare = self._spare, None
-            one.track.verdict, one.track.steps = Verdict.NOT_STARTED, 0
-            one.id, one.lacks_beginning = id_, self.ids.left_out > 0
-            one.is_full, one.counted, one.scheduled = False, Verdict.NOT_STARTED, NEVER
-        else:
-            of = self.track
-            track = Course(of.property, of.invalid_because, self._begins)
-            for signal, heard in self._last_heard.items():
-                track.hear(heard, {signal})
-            if self.cut.own_ages:
-                track.hear(time, self.cut.own_ages)
-            one = Slice(id_, track, self.left_out > 0)
-        one.times = self._no_times
-        one.samples = self.cut.samples(id_)
+        of = self.track
+        known, because = self.cut.known(id_), of.invalid_because
+        one = Slice(id_, of.property, because, known, self._begins)
+        for signal, heard in self._last_heard.items():
+            one.hear(heard, {signal})
+        if self.cut.own_ages:
+            one.hear(time, self.cut.own_ages)
         return one
 
     # Slices that were judged elsewhere.
@@ -215,14 +196,14 @@ class Slices(ToldSlices):
         [topic] = self.cut.keys
         part = self.cut.own_part(self.cut.row(names, frozenset({topic})), (topic,))
         one = self._born(time, id_)
-        self._load(one)
-        self._hear(part.news)
-        part.update.take(time, values)
-        one.track.judged_on = self.cut.window.values()
+        mark(one.known, part.news, is_new=True)
+        part.update.take(one.known, time, values)
+        one.judged_on = self._look(one.known)
+        mark(one.known, part.news, is_new=False)
         return one
 
     def keep(self, one: Slice) -> None:
-        """A slice goes on here, from what its track has seen elsewhere."""
+        """A slice goes on here, from what it has seen elsewhere."""
         self.ids.keep(one)
         self._settle(one)
 
@@ -230,61 +211,47 @@ class Slices(ToldSlices):
 
     def _give(self, time: int, one: Slice, part: Part, given: Sequence[Value]) -> None:
         """A slice gets its part of a row."""
-        track = one.track
+        known = one.known
         if part.aged:
-            track.hear(time, part.aged)
-        self._load(one)
-        self._hear(part.news)
-        part.update.take(time, given)
-        if part.is_step:
-            self._step(time, one, part.news)
-        elif track.property.from_session and not track.steps and not track.invalid:
-            self._step(time, one, ())
-        if self.cut.ages and track.is_renewed:
-            track.renew(time)
+            one.hear(time, part.aged)
+        if part.news:
+            mark(known, part.news, is_new=True)
+        part.update.take(known, time, given)
+        if part.is_step or self._begins_now(one):
+            self._step(time, one)
+        if part.news:
+            mark(known, part.news, is_new=False)
+        if self._has_ages and one.is_renewed:
+            one.renew(time)
         self._settle(one)
 
-    def _load(self, one: Slice) -> None:
-        """Have the samples of a slice, and save those of the slice before."""
-        cut, last = self.cut, self._loaded
-        if last is one or not cut.new:
-            return
-        known = cut.sampler.known
-        if last is not None:
-            last.samples = known[cut.places]
-        known[cut.places] = one.samples
-        if cut.deep:
-            if last is not None:
-                last.times = tuple(samples.times for samples in cut.deep)
-            for samples, times in zip(cut.deep, one.times, strict=True):
-                samples.times = times
-        self._loaded = one
+    def _begins_now(self, one: Slice) -> bool:
+        """Whether the first step of a slice is now, whatever it gets."""
+        return one.property.from_session and not one.steps and not one.invalid
 
-    def _step(self, time: int, one: Slice, news: tuple[int, ...]) -> None:
-        """A slice of which the samples are loaded takes a step, if all has a value."""
-        self._hear(news)
-        values, track = self.cut.window.values(), one.track
-        if not one.is_full:
-            if None in values and not track.property.is_ready(values):
-                return
-            one.is_full = True
-        whole = self.track
-        steps, track.steps = track.steps, whole.steps
-        track.step(time, values)
-        if not self._counts(one):
+    def _step(self, time: int, one: Slice) -> None:
+        """A slice takes a step, if all has a value."""
+        values, whole = self._look(one.known), self.track
+        before = one.steps
+        if not before and None in values and not one.property.is_ready(values):
             return
-        if track.steps == whole.steps:
-            track.steps = steps
+        one.steps = steps = whole.steps
+        one.step(time, values)
+        if self.openings is not None and not self._is_before(one):
+            return
+        if one.steps == steps:
+            one.steps = before
             whole.monitor.invalid += 1
             return
-        whole.steps = track.steps
+        whole.steps = one.steps
         if not self.session.has_begun:
             self.session.begin_run(time)
         if whole.verdicts is not None:
-            self._is_recounted |= self.ids.count(one)
+            if one.verdict is not one.counted:
+                self._recount(one)
             whole.verdicts.append(self.ids.verdict())
             whole.times.append(time)
-            whole.values.append(track.judged_on)
+            whole.values.append(one.judged_on)
 
     # Time.
 
@@ -292,14 +259,15 @@ class Slices(ToldSlices):
         """Take the clock steps up to and including `time`, in their order."""
         changes: list[Change] = []
         until = min(time, self.session.end)
-        while self._due and (now := self._due[0][0]) <= until:
-            while self._due and self._due[0][0] == now:
+        while (last := self.soon) < until:
+            while self._due and self._due[0][0] == last:
                 one = heappop(self._due)[2]
-                if self._goes_on(one) and one.scheduled == now:
+                if self._goes_on(one) and one.scheduled == last:
                     one.scheduled = NEVER
-                    one.track.hold(now)
+                    one.hold(last + 1)
                     self._settle(one)
-            changes += self._tell(now, by_time=True)
+            self.soon = self._due[0][0] if self._due else NEVER
+            self._tell(last + 1, changes, by_time=True)
         return changes
 
     def _goes_on(self, one: Slice) -> bool:
@@ -310,85 +278,83 @@ class Slices(ToldSlices):
         """Take what is due by `time`."""
         return self.hold(time)
 
-    def due(self) -> int:
-        """Before this time, no clock step comes, unless a step comes first."""
-        return self._due[0][0] if self._due else NEVER
-
     # Verdicts.
 
     def _settle(self, one: Slice) -> None:
         """Keep and count a slice, unless it is decided, or as new."""
-        track = one.track
-        has_started = track.verdict is not Verdict.NOT_STARTED
+        verdict = one.verdict
+        has_started = verdict is not Verdict.NOT_STARTED
         if not has_started and self.openings and self.openings.withdraws(one):
             self._drop(one)
             return
-        if track.monitor.state in self.as_new and self.is_as_new(one):
+        if verdict is not one.counted:
+            self._recount(one)
+        if self.as_new and self.is_as_new(one):
             self._forget(one)
             return
         if not one.number:
             self.ids.keep(one)
-        if track.verdict is not one.counted:
-            self._is_recounted |= self.ids.count(one)
-        if track.decided_at is not None and not self._is_before(one):
+        if one.decided_at is not None and not self._is_before(one):
             self._drop(one)
-            self.ids.decide(one, track.decided_at)
-        elif self._goes_by_time and (next_ := track.next) < one.scheduled:
-            one.scheduled = next_
-            heappush(self._due, (next_, one.number, one))
+            self.ids.decide(one, one.decided_at)
+        elif self._goes_by_time and (until := one.until) < one.scheduled:
+            one.scheduled = until
+            heappush(self._due, (until, one.number, one))
+            self.soon = self._due[0][0]
+
+    def _recount(self, one: Slice) -> None:
+        self.ids.count(one)
+        self._is_recounted = True
 
     def _forget(self, one: Slice) -> None:
         """Drop a slice that is as new; most were never kept."""
-        if one.counted is not one.track.verdict:
-            self._is_recounted |= self.ids.count(one)
-        self._drop(one)
-        self.ids.forget(one.id)
+        if one.number or one.scopes:
+            self._drop(one)
+            one.number, one.scheduled, one.monitor.invalid = 0, NEVER, 0
+        if self.ids.limit is None:
+            self.ids.forgotten.add(one.id)
         if self._can_reuse:
-            one.number = 0
             self._spare = one
 
     def is_as_new(self, one: Slice) -> bool:
         """Whether a slice need not be kept."""
-        track = one.track
         return (
-            track.monitor.state in self.as_new
-            and track.verdict is Verdict.PRESUMABLY_SATISFIED
-            and track.next >= NEVER
+            one.monitor.state in self.as_new
+            and one.verdict is Verdict.PRESUMABLY_SATISFIED
+            and (not self._goes_by_time or one.until >= NEVER)
         )
 
     def _drop(self, one: Slice) -> None:
         self.ids.slices.pop(one.id, None)
         for gone in self._gone.values():
             gone.discard(one.id)
-        if self._loaded is one:
-            self._loaded = None
         if self.track.scopes:
-            for whole, scope in zip(self.track.scopes, one.track.scopes, strict=True):
+            for whole, scope in zip(self.track.scopes, one.scopes, strict=True):
                 whole.count += scope.count
 
-    def _tell(self, time: int, *, by_time: bool = False) -> list[Change]:
-        """What has become of the verdict of the whole."""
+    def _tell(self, time: int, changes: list[Change], *, by_time: bool = False) -> None:
+        """What has become of the verdict of the whole; `changes` grows."""
         if self.openings is not None:
             for one in self.openings.alike():
                 self._drop(one)
         if not self._is_recounted:
-            return []
+            return
         self._is_recounted = False
         track, verdict = self.track, self.ids.verdict()
         if verdict is track.verdict:
-            return []
+            return
         moment = Moment(max(0, track.steps - 1), time, by_time=by_time)
         change = Change(track.property, track.verdict, verdict, moment)
         track.verdict = verdict
-        track.open_since = moment if verdict is Verdict.PRESUMABLY_VIOLATED else None
+        track.owe(moment.step, time, by_time=by_time)
         if verdict is Verdict.VIOLATED:
             track.decided_at = next(iter(self.ids.violated.values())).failure
         if track.verdicts is not None:
             track.changes.append(change)
         if track.observer is not None:
             track.observer.changed(change)
-        return [change]
+        changes.append(change)
 
     def courses(self) -> Iterator[Course]:
         """Those of the slices that are kept; of others, the whole has the episodes."""
-        return (one.track for one in self.ids.slices.values())
+        return iter(self.ids.slices.values())

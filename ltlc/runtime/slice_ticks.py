@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from ltlc.runtime.properties import Change
-from ltlc.runtime.sampling import Value
+from ltlc.runtime.sampling import Value, mark
 from ltlc.runtime.session import Session
 from ltlc.runtime.slice_ids import NOTHING_HEARD, Ids, Slice
 from ltlc.runtime.slice_keys import Cut, Part, Row
@@ -45,20 +45,13 @@ class TickedSlices(Slices):
             self._ticks = Ticks(self._rate, time)
 
     def take(
-        self,
-        time: int,
-        names: tuple[str, ...],
-        topics: frozenset[str],
-        values: Sequence[Value],
-    ) -> list[Change]:
-        """Samples of `names` came in, and messages on `topics`; all is held to then."""
-        row = self.cut.row(names, topics)
-        if not row.keys and not row.shared.topics:
-            return []
+        self, time: int, row: Row, values: Sequence[Value], changes: list[Change]
+    ) -> None:
+        """Samples and messages came in, all is held to then; `changes` grows."""
         if self._ticks is None:
             self._ticks = Ticks(self._rate, time)
         self._take_all(time, row, values)
-        return self._tell(time)
+        self._tell(time, changes)
 
     def _share(self, time: int, part: Part, given: Sequence[Value]) -> None:
         """Keep what all slices share for the next tick."""
@@ -71,13 +64,13 @@ class TickedSlices(Slices):
         """Keep what the next tick sees of a slice."""
         assert self._ticks is not None
         if part.aged:
-            one.track.hear(time, part.aged)
+            one.hear(time, part.aged)
         own = {n: value for n, value in part.of(given).items() if self.cut.is_own(n)}
         one.latest = {**(one.latest or {}), **own}
         one.heard |= part.topics
         self._quiet = 0
-        if one.track.is_renewed and self._ticks.next() != time:
-            one.track.renew(time)
+        if one.is_renewed and self._ticks.next() != time:
+            one.renew(time)
         self._settle(one)
 
     def _open(self, time: int, row: Row, values: Sequence[Value]) -> Slice | None:
@@ -97,7 +90,7 @@ class TickedSlices(Slices):
         # The first step, which a tick may be, says when the run ends.
         while (ticks := self._ticks) is not None and ticks.next() < self._until(time):
             changes += self._tick(ticks)
-            self._skip(ticks, min(self._until(time), self.due()))
+            self._skip(ticks, min(self._until(time), self.soon + 1))
         return changes
 
     def _until(self, time: int) -> int:
@@ -112,23 +105,28 @@ class TickedSlices(Slices):
         self._quiet += 1
         self.session.steps += 1
         names, given = tuple(self._latest), tuple(self._latest.values())
-        self._hear(cut.sampler.news(self._news))
-        cut.tick_part(names, is_own=False).update.take(time, given)
+        shared = cut.tick_part(names, is_own=False)
+        cut.sampler.hear(cut.sampler.news(self._news))
+        shared.update.take(cut.sampler.known, time, given)
+        cut.sampler.hear(())
         self._open_by_news()
         for one in self._going_on():
-            self._load(one)
-            latest = one.latest or {}
-            part = cut.tick_part((*latest, *names), is_own=True)
+            known, latest = one.known, one.latest or {}
+            if cut.keys:
+                cut.share(known)
             news = cut.sampler.news(self._news | one.heard)
-            self._hear(news)
-            part.update.take(time, (*latest.values(), *given))
-            self._step(time, one, news)
+            mark(known, news, is_new=True)
+            part = cut.tick_part((*latest, *names), is_own=True)
+            part.update.take(known, time, (*latest.values(), *given))
+            self._step(time, one)
+            mark(known, news, is_new=False)
             one.heard = NOTHING_HEARD
-            if one.track.is_renewed:
-                one.track.renew(time)
+            if one.is_renewed:
+                one.renew(time)
             self._settle(one)
         self._news = frozenset()
-        return changes + self._tell(time)
+        self._tell(time, changes)
+        return changes
 
     def _open_by_news(self) -> None:
         """Open an instance if there is news of messages that open one."""
@@ -144,18 +142,18 @@ class TickedSlices(Slices):
         # The last is taken: slopes ask for its time.
         times = ticks.before(until) - 1
         is_settled = self._quiet > self.cut.sampler.reach + 1 and all(
-            one.track.is_settled for one in going_on
+            one.is_settled for one in going_on
         )
         if times <= 0 or not is_settled or self.track.verdicts is not None:
             return
         ticks.count += times
         self.session.steps += times
         for one in going_on:
-            invalid, steps = one.track.invalid, one.track.steps
-            one.track.repeat(times, ())
-            has_steps = one.track.steps > steps
-            if self._counts(one):
-                self.track.monitor.invalid += one.track.invalid - invalid
+            invalid, steps = one.invalid, one.steps
+            one.repeat(times, ())
+            has_steps = one.steps > steps
+            if self.openings is None or self._is_before(one):
+                self.track.monitor.invalid += one.invalid - invalid
                 self.track.steps += times * has_steps
             if has_steps:
-                one.track.steps = self.track.steps
+                one.steps = self.track.steps

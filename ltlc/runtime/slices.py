@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ltlc.runtime.courses import Course
 from ltlc.runtime.instance_reports import ToldInstances
 from ltlc.runtime.sampling import Derived, Reading
 from ltlc.runtime.session import Session
-from ltlc.runtime.slice_ids import Ids, Messages
+from ltlc.runtime.slice_ids import Ids, Messages, Slice
 from ltlc.runtime.slice_keys import Cut, Key, Opener
 from ltlc.runtime.slice_openings import Openings
 from ltlc.runtime.slice_steps import Slices
@@ -60,9 +59,9 @@ class Instances:
         """Judge the property of `track` so, in a session that begins."""
         opener = Opener(self.name, self.topic, self.mark)
         cut = Cut(self.signals, (), "", track.property, opener)
-        openings = Openings(
-            opener, Messages(self.limit), Course(track.property, track.invalid_because)
-        )
+        known, because = cut.sampler.known, track.invalid_because
+        before = Slice(0, track.property, because, known)
+        openings = Openings(opener, Messages(self.limit), before)
         messages, rate = openings.messages, session.plan.rate
         if rate is None:
             return OpenedSlices(track, session, cut, messages, frozenset(), openings)

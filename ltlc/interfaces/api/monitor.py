@@ -91,6 +91,7 @@ class LiveRun:
         self._columns: Collection[str] = ()
         self._heads: dict[str, None] = {}
         self._readers: dict[tuple[str, ...], _Reader] = {}
+        self._reader: _Reader | None = None
         self._wanted: Mapping[str, Signal] = {}
         self._checks = checks_of(())
         self._rows = 0
@@ -110,31 +111,31 @@ class LiveRun:
             raise UnusableInput((), "the run is finished; call `reset` to begin another")
         try:
             # Written out, as this is most of what a row costs beside its properties.
-            if values.__class__ is not dict and not isinstance(values, Mapping):
-                raise UnusableInput(
-                    (), f"row {self._rows + 1} is {values!r:.100}; a row must be a mapping from signals to values"
-                )
-            keys = tuple(values)
-            reader = self._readers.get(keys) or self._meet(keys)
-            written = time if time_ns is None and not reader.has_time else _written(values.get(TIME), time, time_ns)
-            is_counted = written is None
-            moment = time_given(NAME, self._rows + 1, self._time, self._counted() if is_counted else written)
-            if is_counted is not self._is_counted and self._rows:
-                raise self._mixed(is_counted)
-            route = reader.route
-            taken: list[Value] = []
+            reader = self._reader
+            if reader is None or values.__class__ is not dict or tuple(values) != reader.keys:
+                reader = self._reader_of(values)
+            written: object = time
+            if reader.has_time or time_ns is not None:
+                written = _written(values.get(TIME), time, time_ns)
+            if (written is None) is not self._is_counted:
+                self._is_counted = self._is_by_number(written is None)
+            number = self._rows + 1
+            moment = time_given(NAME, number, self._time, self._rows if self._is_counted else written)
+            route, taken = reader.route, []
             for name in reader.doubles:
                 value = values[name]
-                if value.__class__ is float:
-                    taken.append(value)
-            if route is None or len(taken) < len(reader.doubles):
+                if value.__class__ is not float:
+                    route = None
+                taken.append(value)
+            if route is None:
                 route, taken = self._read(moment, values, reader.table)
-            self._rows, self._time, self._is_counted = self._rows + 1, moment, is_counted
-        except RecordingError as error:
-            raise UnusableInput([error.diagnostic]) from None
-        finally:
+        except BaseException as error:
             if not self._rows:
                 self.reset()
+            if isinstance(error, RecordingError):
+                raise UnusableInput([error.diagnostic]) from None
+            raise
+        self._rows, self._time = number, moment
         assert self._by_rows is not None
         return self._by_rows.follow(moment, route, taken)
 
@@ -169,20 +170,29 @@ class LiveRun:
         assert self._by_rows is not None
         return self._by_rows.route(tuple(taken)), [*taken.values()]
 
-    def _counted(self) -> int:
-        """The time of a row that has none. Raises UnusableInput where that matters."""
-        if self._needs_time:
+    def _is_by_number(self, is_counted: bool) -> bool:
+        """Whether the times of rows are their numbers, which the first row says. Raises UnusableInput for others."""
+        if is_counted and self._needs_time:
             raise UnusableInput((), f"row {self._rows + 1} has no time, and {self._needs_time}")
-        return self._rows
-
-    def _mixed(self, is_counted: bool) -> UnusableInput:
-        this, others = ("no time", "have one") if is_counted else ("a time", "have none")
-        return UnusableInput((), f"row {self._rows + 1} has {this}, but the rows before {others}")
+        if self._rows:
+            this, others = ("no time", "have one") if is_counted else ("a time", "have none")
+            raise UnusableInput((), f"row {self._rows + 1} has {this}, but the rows before {others}")
+        return is_counted
 
     def _table(self, keys: Iterable[str], signals: Mapping[str, Signal] | None = None) -> FromTable:
         """What rows with these keys have of `signals`, or of all. Raises RecordingError."""
         of = self._judge.signals if signals is None else signals
         return FromTable(NAME, GivenTable(NAME, [dict.fromkeys(keys)]), of)
+
+    def _reader_of(self, row: Mapping[str, object]) -> _Reader:
+        """What reads a row. Raises RecordingError, UnusableInput."""
+        if not isinstance(row, Mapping):
+            raise UnusableInput(
+                (), f"row {self._rows + 1} is {row!r:.100}; a row must be a mapping from signals to values"
+            )
+        keys = tuple(row)
+        self._reader = self._readers.get(keys) or self._meet(keys)
+        return self._reader
 
     def _meet(self, keys: tuple[str, ...]) -> _Reader:
         """What reads rows with these keys, of which none has come. Raises RecordingError, UnusableInput."""
@@ -203,7 +213,7 @@ class LiveRun:
         is_simple = are_doubles and not any(name in found.cells for name in self._checks.unsigned)
         doubles = tuple(found.cells) if is_simple else ()
         route = self._by_rows.route(doubles) if is_simple else None
-        self._readers[keys] = _Reader(found, TIME in keys, doubles, route)
+        self._readers[keys] = _Reader(keys, found, TIME in keys, doubles, route)
         return self._readers[keys]
 
     def _begin(self, columns: Collection[str]) -> ByRows:
@@ -217,11 +227,12 @@ class LiveRun:
 
 @dataclass(frozen=True, slots=True)
 class _Reader:
-    """Reads rows with the same keys, which `table` has as columns; they may have the time among them.
+    """Reads rows with the same `keys`, which `table` has as columns; they may have the time among them.
 
     If all that is read of them are doubles, as in most rows, `route` is where these lead to.
     """
 
+    keys: tuple[str, ...]
     table: FromTable
     has_time: bool
     doubles: tuple[str, ...]

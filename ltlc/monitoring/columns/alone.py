@@ -28,23 +28,23 @@ def take_alone(
     slices: Slices, one: Slice, messages: Elements, those: Places, steps: Places, until: Nanoseconds
 ) -> Alone:
     """Have a slice take `those` messages, whose steps have the numbers in `steps`, and time, until it is decided."""
-    track, found = one.track, Alone()
+    found = Alone()
     for message in those.tolist():
         time = int(messages.times[message])
         if _is_decided(found, one, messages, time):
             return found
         was_new = slices.is_as_new(one)
         if messages.is_own(message):
-            track.hear(time, slices.cut.own_ages)
-        track.steps = int(steps[message])
-        previous = track.step(time, messages.values(slices.cut, message, one))
-        changes = [] if previous is None else [track.change(previous, time)]
-        changes += track.renew(time) if track.is_renewed else []
+            one.hear(time, slices.cut.own_ages)
+        one.steps = int(steps[message])
+        previous = one.step(time, messages.values(slices.cut, message, one))
+        changes = [] if previous is None else [one.change(previous, time)]
+        changes += one.renew(time) if one.is_renewed else []
         found.changes += [((2 * message + 1, time), each) for each in changes]
         found.count += 1
         if was_new and not slices.is_as_new(one):
             found.returned = message
-        if track.verdict.is_permanent:
+        if one.verdict.is_permanent:
             return found
     _is_decided(found, one, messages, until)
     return found
@@ -52,7 +52,7 @@ def take_alone(
 
 def _is_decided(found: Alone, one: Slice, messages: Elements, time: Nanoseconds) -> bool:
     """Let a slice take its clock steps up to and including `time`; whether that decides it."""
-    for change in one.track.hold(time):
+    for change in one.hold(time):
         now = change.moment.time
         found.changes.append(((2 * int(messages.times.searchsorted(now)), now), change))
-    return one.track.verdict.is_permanent
+    return one.verdict.is_permanent

@@ -122,7 +122,7 @@ class Elements:
             elif isinstance(wanted, New):
                 found.append(self.is_own(message))
             else:
-                found.append(self.own.steps.value(wanted, last) if last >= 0 else one.track.judged_on[place])
+                found.append(self.own.steps.value(wanted, last) if last >= 0 else one.judged_on[place])
         return found
 
 

@@ -14,7 +14,6 @@ from ltlc.monitoring.columns.prepared import Prepared
 from ltlc.monitoring.columns.series import UnsupportedError
 from ltlc.monitoring.columns.tables import States
 from ltlc.runtime.courses import Course
-from ltlc.runtime.properties import Moment
 from ltlc.runtime.slice_ids import Slice
 from ltlc.runtime.slice_steps import Slices
 from ltlc.runtime.times import NEVER
@@ -75,28 +74,28 @@ class Known:
         """A slice with a track, as if it had gone row by row; before its first step, it begins at `time`."""
         latest = {name: values[number : number + 1].tolist()[0] for name, values in self.latest.items()}
         one = self._slices.resumed(time, self.numbers.id(number), tuple(latest), list(latest.values()))
-        track, state = one.track, int(self.states[number])
+        state = int(self.states[number])
         if not state:
             return one
         if self.dues:  # Clock steps judge the values of the last step, which a monitor keeps for itself.
-            track.monitor.step(time, *track.judged_on)
-        track.monitor.state, _ = self._machine.states[state]
-        track.monitor.verdict = track.verdict = self._of.states[track.monitor.state].verdict
-        track.steps = int(self.stepped[number]) + 1
-        if track.verdict is Verdict.PRESUMABLY_VIOLATED:
-            track.open_since = Moment(int(self.owed[number]), int(self.owed_at[number]))
+            one.monitor.step(time, *one.judged_on)
+        one.monitor.state, _ = self._machine.states[state]
+        one.monitor.verdict = one.verdict = self._of.states[one.monitor.state].verdict
+        one.steps = int(self.stepped[number]) + 1
+        if one.verdict is Verdict.PRESUMABLY_VIOLATED:
+            one.owe(int(self.owed[number]), int(self.owed_at[number]))
         for name, due in zip(self._of.clocks, self.dues, strict=True):
-            setattr(track.monitor, name, int(due[number]))
+            setattr(one.monitor, name, int(due[number]))
         if self.dues:
-            track.monitor.due = int(self.next[number])
+            one.monitor.due = int(self.next[number])
         return one
 
     def put(self, number: int, track: Course) -> None:
         """A slice goes on from where its `track` is, which is not decided."""
         self.states[number] = self._machine.numbers[track.monitor.state, 0]
         self.stepped[number] = track.steps - 1
-        if track.open_since is not None:
-            self.owed[number], self.owed_at[number] = track.open_since.step, track.open_since.time
+        if (since := track.open_since) is not None:
+            self.owed[number], self.owed_at[number] = since.step, since.time
         for name, due in zip(self._of.clocks, self.dues, strict=True):
             due[number] = getattr(track.monitor, name)
         self.next[number] = track.monitor.due

@@ -13,7 +13,7 @@ from ltlc.inputs.recordings.blocks import Array, Block, Places, Ragged
 from ltlc.monitoring.columns.arrays import ByStep, Views, held_once, views_after, views_of
 from ltlc.monitoring.columns.bits import Mask, union
 from ltlc.runtime.functions import divide
-from ltlc.runtime.sampling import Excused, Input, New, Reading, Recent, Sampler, Samples, Slope, Value, Wanted
+from ltlc.runtime.sampling import Excused, Input, New, Reading, Recent, Sampler, Slope, Value, Wanted
 from ltlc.runtime.times import SECOND, seconds
 from ltlc.specification.wire import EXACT
 
@@ -74,10 +74,11 @@ class Series:
         """The time of a sample, counted likewise."""
         return int(self.times[number]) if number >= 0 else self.times_before[number]
 
-    def add_to(self, samples: Samples) -> None:
-        """Add those of the samples in the block that are kept: the last."""
+    def add_to(self, sampler: Sampler, name: str) -> None:
+        """Add those of the samples in the block that are kept of the signal `name`: the last."""
+        samples = sampler.samples[name]
         for number in range(max(0, len(self) - samples.depth), len(self)):
-            samples.add(self.time(number), self.value(number))
+            samples.add(sampler.known, self.time(number), self.value(number))
 
 
 class Columns:
@@ -96,34 +97,34 @@ class Columns:
         self._heard: dict[str, Rows] = {}
 
     def _reading(self, block: Block, reading: Reading) -> Series:
-        samples = self._sampler.samples[reading.name]
-        found = block.samples.get(reading.name)
+        name, found = reading.name, block.samples.get(reading.name)
         if found is None:
-            none = np.empty(0, np.int64)
-            values = views_of(Ragged(np.empty(0), none)) if "array" in reading.type else _none_like(samples.values)
-            return self._series(none, values, samples, none)
+            none, before = np.empty(0, np.int64), self._sampler.values(name)
+            values = views_of(Ragged(np.empty(0), none)) if "array" in reading.type else _none_like(before)
+            return self._series(none, values, name, none)
         rows = self.shared(found.rows)
-        return self._series(rows, _as_read(found.values, reading), samples, rows)
+        return self._series(rows, _as_read(found.values, reading), name, rows)
 
     def add(self, name: str, steps: Steps, values: Array, has_sample: Mask | None = None) -> None:
         """Add the signal `name`, which has one of the `values` at each of `steps`, or at those with `has_sample`."""
         rows = steps.base if not steps.first else self.shared(steps.rows())
         if has_sample is not None:
             rows, values = self.shared(steps.rows()[has_sample]), values[has_sample]
-        self.series[name] = self._series(rows, values, self._sampler.samples[name], steps.base)
+        self.series[name] = self._series(rows, values, name, steps.base)
 
     def add_constant(self, name: str) -> None:
         """Add a signal that is computed from nothing, and has always had its value."""
-        samples, none = self._sampler.samples[name], np.empty(0, np.int64)
-        self.series[name] = self._series(none, _none_like(samples.values), samples, none)
+        none = np.empty(0, np.int64)
+        self.series[name] = self._series(none, _none_like(self._sampler.values(name)), name, none)
 
     def lack(self, name: str, reason: str) -> None:
         """There is no column of the signal `name`, for this reason."""
         self._lacking[name] = reason
 
-    def _series(self, rows: Rows, values: Array | Views, samples: Samples, fresh: Rows) -> Series:
+    def _series(self, rows: Rows, values: Array | Views, name: str, fresh: Rows) -> Series:
         times = self.times if rows is None else self.times[rows]
-        return Series(rows, values, times, samples.values[::-1], samples.times[::-1], fresh)
+        samples, known = self._sampler.samples[name], self._sampler.known
+        return Series(rows, values, times, samples.values(known)[::-1], samples.times(known)[::-1], fresh)
 
     def shared(self, rows: Places) -> Rows:
         """`rows`, the same object for equal ones; None for all."""

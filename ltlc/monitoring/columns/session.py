@@ -342,7 +342,7 @@ class ByBlocks:
             together = columns.together(columns.series[each.name].rows for each in self._readings)
             session.steps += columns.number_of(together)
             for name, series in columns.series.items():
-                series.add_to(session.sampler.samples[name])
+                series.add_to(session.sampler, name)
         session.time = int(rows.times[-1])
         session.began = session.began if session.began is not None else int(rows.times[0])
         session.has_begun = session.has_begun or any(track.steps for track in session.tracks)
@@ -376,7 +376,7 @@ class ByBlocks:
             if len(series):
                 pace.latest[name] = series.value(len(series) - 1)
         for name, series in view.columns.series.items():
-            series.add_to(pace.sampler.samples[name])
+            series.add_to(pace.sampler, name)
 
 
 def _before(rows: Columns, topic: str, last: int) -> int:

@@ -265,18 +265,18 @@ class BySlices:
         """Take the step by which a slice is violated."""
         time = int(taken.messages.times[message])
         one = self._slice(taken, number, message, time)
-        one.track.steps = int(taken.steps[message])
+        one.steps = int(taken.steps[message])
         if taken.messages.is_own(message):
-            one.track.hear(time, self.slices.cut.own_ages)
-        one.track.step(time, taken.messages.values(self.slices.cut, message, one))
-        assert one.track.decided_at is not None
+            one.hear(time, self.slices.cut.own_ages)
+        one.step(time, taken.messages.values(self.slices.cut, message, one))
+        assert one.decided_at is not None
         begins = int(self._known.begins[number])
-        taken.violated.append(((2 * message + 1, time), begins, one, one.track.decided_at))
+        taken.violated.append(((2 * message + 1, time), begins, one, one.decided_at))
 
     def _take_alone(self, taken: Taken, number: int, those: Places) -> None:
         """Have a slice take messages by itself."""
         known, one = self._known, self._slice(taken, number, _first(those))
-        track, since = one.track, one.track.open_since
+        since = one.open_since
         alone = take_alone(self.slices, one, taken.messages, those, taken.steps, taken.messages.until)
         for place, change in alone.changes:
             change_ = (change.current is Verdict.PRESUMABLY_VIOLATED) - (change.previous is Verdict.PRESUMABLY_VIOLATED)
@@ -284,15 +284,15 @@ class BySlices:
             self._owed += change_
         if alone.returned is not None:
             known.begins[number] = self._count + alone.returned
-        if track.decided_at is not None:
+        if one.decided_at is not None:
             known.decide(number)
-            if track.verdict is Verdict.VIOLATED:
-                taken.violated.append((alone.changes[-1][0], int(known.begins[number]), one, track.decided_at))
+            if one.verdict is Verdict.VIOLATED:
+                taken.violated.append((alone.changes[-1][0], int(known.begins[number]), one, one.decided_at))
             else:
                 self.slices.ids.satisfied.add(one.id)
             return
-        known.put(number, track)
-        if track.open_since is not None and track.open_since is not since:
+        known.put(number, one)
+        if one.open_since not in (None, since):
             taken.opened.append(np.array([alone.changes[-1][0][0] >> 1]))
 
     def _conclude(self, taken: Taken) -> None:
@@ -303,17 +303,19 @@ class BySlices:
             ids.decide(one, failure)
         if ids.violated:
             track.decided_at = next(iter(ids.violated.values())).failure
-            track.verdict, track.open_since = Verdict.VIOLATED, None
+            track.verdict = Verdict.VIOLATED
         elif self._owed:
-            track.verdict, track.open_since = Verdict.PRESUMABLY_VIOLATED, self._since(taken)
+            if (since := self._since(taken)) is not None:
+                track.owe(since.step, since.time, by_time=since.by_time)
+            track.verdict = Verdict.PRESUMABLY_VIOLATED
         elif track.steps:
-            track.verdict, track.open_since = Verdict.PRESUMABLY_SATISFIED, None
+            track.verdict = Verdict.PRESUMABLY_SATISFIED
 
     def _since(self, taken: Taken) -> Moment | None:
-        """From when on something has been owed in some slice, whichever."""
+        """From when on something has been owed in some slice, whichever; None if that is since before."""
         opened = np.concatenate([np.empty(0, np.int64), *taken.opened])
-        if len(opened) < self._owed:  # in some slice it has been since before
-            return self.slices.track.open_since
+        if len(opened) < self._owed:
+            return None
         rows = taken.messages.rows
         until = int(rows.searchsorted(rows[opened.min()], "right"))
         found = [(np.array([key]), np.array([time]), np.array([by])) for (key, time), by in taken.changes]
@@ -328,7 +330,7 @@ class BySlices:
         keys, times, counts = keys[is_last], times[is_last], counts[is_last]
         rises = np.flatnonzero((counts > 0) & (np.concatenate(([taken.owed], counts[:-1])) == 0))
         if not len(rises):
-            return self.slices.track.open_since
+            return None
         key, time = int(keys[rises[-1]]), int(times[rises[-1]])
         step = int(taken.steps[rows.searchsorted((key + 1) >> 1)]) - 1
         return Moment(max(0, step), time, by_time=not key % 2)

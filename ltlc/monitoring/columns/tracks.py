@@ -25,7 +25,6 @@ from ltlc.runtime.episodes import Episodes
 from ltlc.runtime.properties import Moment, Opening, Scope
 from ltlc.runtime.reasons import reason_of_none
 from ltlc.runtime.tracking import Track
-from ltlc.semantics.verdicts import Verdict
 
 
 @dataclass(frozen=True)
@@ -165,8 +164,8 @@ class Forward:
         track.monitor.state, is_open = self.tables.machine.states[passed.state]
         track.monitor.verdict = track.verdict = self.of.states[track.monitor.state].verdict
         if passed.changed >= 0:
-            is_owed = track.verdict is Verdict.PRESUMABLY_VIOLATED
-            track.open_since = self._moment(passed.changed, found) if is_owed else None
+            since = self._moment(passed.changed, found)
+            track.owe(since.step, since.time)
         if self.of.slots:
             self._reopen(passed, is_open, found)
         track.steps += passed.steps

@@ -69,7 +69,7 @@ def measure(declarations: str, probes: Sequence[Probe], path: Path, message_path
         if len(block.times):
             span += [int(block.times[0]), int(block.times[-1])]
         for name, of in columns.series.items():
-            of.add_to(session.sampler.samples[name])
+            of.add_to(session.sampler, name)
         columns.release()
     came = {topic: np.concatenate(found) for topic, found in times.items() if any(map(len, found))}
     return Measured(
