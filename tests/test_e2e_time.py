@@ -216,7 +216,7 @@ def test_a_dead_topic_violates_its_watchdog(folder: Path, tmp_path: Path) -> Non
     (began, _), *_ = recorded(recording)
     found = node.runs[0]["watchdog"]["decided_at"]
     assert (found["time_ns"], found["by_time"]) == (began + 200 * MS + 1, True)
-    assert judged(folder / "dead.txt", recording) == told(node.runs[0])
+    assert told(judged(folder / "dead.txt", recording)) == told(node.runs[0])
 
 
 SLEEPER = """
@@ -285,7 +285,7 @@ def test_what_was_received_in_time_settles_what_a_late_node_looks_at_later(
     times = {name: time for time, row in recorded(recording) for name, value in row.items() if value}
     is_late = times["done"] > times["go"] + 3000 * MS
     assert (node.changes[-1][1] == "violated") == is_late
-    assert judged(folder / "watch.txt", recording) == told(node.runs[0])
+    assert told(judged(folder / "watch.txt", recording)) == told(node.runs[0])
 
 
 @pytest.mark.parametrize("executor", ["rclpy.experimental", "rclpy.none"])
@@ -340,7 +340,7 @@ def test_under_simulated_time_only_the_clock_passes_deadlines(
     first, second = node.runs
     assert first["answered"]["decided_at"]["time_ns"] == 5300 * MS + 1
     assert "told_late" not in first["answered"]
-    assert judged(folder / "watch.txt", recording) == told(first)
+    assert told(judged(folder / "watch.txt", recording)) == told(first)
     assert recorded(tmp_path / "run_2.jsonl")[0] == (2000 * MS, {"go": False})
     assert second["answered"]["verdict"] == "not_started"
 
