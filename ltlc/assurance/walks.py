@@ -33,7 +33,7 @@ from ltlc.semantics.trackers import trackers_of
 from ltlc.semantics.words import Letter
 from ltlc.specification.expressions import New
 
-MOST_WALKS = 1600
+MOST_WALKS = 1200
 """Walks of which each shows something new."""
 
 MOST_CHOICES = 16
@@ -175,14 +175,11 @@ class Walks:
         return state
 
     def _waits(self, place: Place) -> list[Nanoseconds]:
-        """When a clock expires, and when another one has to start to expire with it; when any that starts now would."""
         if not place.walk.steps:
             return []
         now = place.walk.until
-        dues = [moment - each for _, moment in place.run.dues() for each in self._durations]
-        near = {moment + side for moment in dues for side in (-2, -1, 0, 1)}
-        near |= {now + 1 + each for each in (*self._durations, self._longest + 1)}
-        return sorted(moment for moment in near if moment > now)
+        near = (moment + side for _, moment in place.run.dues() for side in (-1, 0, 1))
+        return sorted({moment for moment in near if moment > now} | {now + 1, now + self._longest + 2})
 
     def walk(self, told: Observation, further: Sequence[Reading], taking: Taking | None = None) -> Walk:
         """`told`, then `further` steps after random waits."""
