@@ -68,7 +68,6 @@ ONE_TOPIC = (
     "always (dist < 1 implies age(stop) <= 40 ns)",
     "after_until new dist, age(dist) > 25 ns, always (kind == 1 implies eventually kind == 2 within 20 ns)",
     "never v - dist > 2",
-    "never @{dist, when new dist} > 2",
     "never @{v, when new dist} > 2",
     "never @{v, when new stop and v > 1} > dist",
     "always (id == g implies v > @{v, -1} - 3)",
