@@ -217,7 +217,7 @@ def test_a_letter_that_the_alphabet_lacks_is_told_with_the_values_that_give_it(
     folder: Path, capsys: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (folder / "props.txt").write_text("decl x /x Float64.data\nroot: never 1 / sqrt(x) < 0\n")
-    monkeypatch.setattr("ltlc.interfaces.api.prepare.compile_specification", compiled_over_too_few_letters)
+    monkeypatch.setattr("ltlc.compiler.compile_specification", compiled_over_too_few_letters)
     assert main(["build", "props.txt", "--target", "hoa"]) == 1
     message = "the alphabet of `root` excludes `1 / sqrt(x) < 0`, but x = -0.0 leads to it"
     assert f"error[LTL706]: {message}" in capsys.readouterr().err
