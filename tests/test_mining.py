@@ -22,6 +22,7 @@ from ltlc.automata import Budget, translate
 from ltlc.base.source import Source, Span
 from ltlc.cli import main
 from ltlc.frontend.language import load_text
+from ltlc.frontend.language.parameters import Role
 from ltlc.inputs.recordings import open_recording
 from ltlc.monitoring.judging.run import run
 from ltlc.monitoring.mining import oracle
@@ -29,6 +30,7 @@ from ltlc.monitoring.mining.mine import Finding, Mined, Result, mine
 from ltlc.monitoring.mining.monotone import WEAKER, Monotony, NotMonotoneError
 from ltlc.monitoring.mining.search import Search
 from ltlc.monitoring.mining.template import load
+from ltlc.monitoring.mining.values import values
 from ltlc.semantics import properties as p
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.denotation import satisfies
@@ -41,6 +43,7 @@ from ltlc.specification.evaluation import is_true
 from ltlc.specification.expressions import Comparison, IsTrue, Relation
 from ltlc.specification.shapes import renamed
 from ltlc.specification.specification import PropertySpecification
+from ltlc.specification.wire import DOUBLES, SINGLES, Kind, Numbers
 
 DECLARATIONS = """
 decl v /odom Odometry.twist.twist.linear.x
@@ -343,14 +346,16 @@ def test_a_value_is_written_so_that_it_reads_back_exactly(
         assert mined_.findings[0].result is Result.NONE
         return
     assert mined_.findings[0].trial.text == value
-    assert mined_.values is not None
-    filled = mined_.template.text(mined_.values)
+    values = mined_.values(exact=True)
+    assert values is not None
+    filled = mined_.template.text(values)
     assert filled == more + text(property_.replace("?", value))
     assert passes(filled, path)
 
 
 @pytest.mark.parametrize(
-    ("step", "value"), [(0.05, "50 ms"), (2.5, "2.5 s"), (1.000000001, "1.000000001 s"), (60, "1 min")]
+    ("step", "value"),
+    [(0.05, "50 ms"), (2.5, "2.5 s"), (1.000000001, "1.000000001 s"), (0.0123456, "12.3456 ms"), (60, "1 min")],
 )
 def test_a_duration_is_written_in_a_unit_that_is_easy_to_read(tmp_path: Path, step: float, value: str) -> None:
     path = recording(tmp_path / "run.csv", "on", [[0], [1]], step)
@@ -395,6 +400,103 @@ def test_a_search_ends_at_the_first_number_that_passes_wherever_the_hints_are() 
             looks += 1
         assert search.found == (first if first <= last else None)
         assert looks <= 64
+
+
+# --- rounding ---------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("property_", "columns", "rows", "step", "value"),
+    [
+        ("never v > ?", "v", [[2.34567]], 1, "2.35"),
+        ("never v > ?", "v", [[0.30000000000000004]], 1, "0.301"),
+        ("never v >= ?", "v", [[2.5]], 1, "2.51"),
+        ("never v > ?", "v", [[2.5]], 1, "2.5"),
+        ("never v > ?", "v", [[9.999]], 1, "10"),
+        ("never v > ?", "v", [[-2.34567]], 1, "-2.34"),
+        ("always v >= ?", "v", [[2.34567]], 1, "2.34"),
+        ("always v >= ?", "v", [[-2.34567]], 1, "-2.35"),
+        ("always v >= ?", "v", [[0]], 1, "0"),
+        ("never v > ?", "v", [[5250123.4]], 1, "5250124"),
+        ("never v > ?", "v", [[1.23456e-9]], 1, "1.24e-09"),
+        ("never v > ?", "v", [[5e-324]], 1, "5e-324"),
+        ("never v > ?", "v", [[1.7976931348623157e308]], 1, "1.7976931348623157e+308"),
+        ("never v >= ?", "v", [[-1.7976931348623157e308]], 1, "-1.7976931348623155e+308"),
+        ("never s > ?", "s", [[0.3]], 1, "0.3"),
+        ("never s >= ?", "s", [[0.3]], 1, "0.301"),
+        ("always s > ?", "s", [[0.3]], 1, "0.299"),
+        ("never s > ?", "s", [[3.4028235e38]], 1, "3.4028235e+38"),
+        ("never n > ?", "n", [[123457]], 1, "123457"),
+        ("never n >= ?", "n", [[2**32 - 1]], 1, "4294967296"),
+        ("always v =={?} 1", "v", [[1.23456]], 1, "0.235"),
+        ("always v !={?} 1", "v", [[1.23456]], 1, "0.234"),
+        ("always v !={?} 1", "v", [[1.0000000000000002]], 1, "2.22e-16"),
+        ("eventually on within ?", "on", [[0], [1]], 0.000123456, "124 us"),
+        ("eventually on within ?", "on", [[0], [1]], 0.0123456, "12.4 ms"),
+        ("eventually on within ?", "on", [[0], [1]], 0.000000002, "2 ns"),
+        ("eventually on within ?", "on", [[0], [1]], 1.000000001, "1.01 s"),
+        ("eventually on within ?", "on", [[0], [1]], 5025.678, "5026 s"),
+        ("eventually on within ?", "on", [[0], [1]], 1500, "25 min"),
+        ("within ?, never on", "on", [[0], [1]], 1.23456, "1.23 s"),
+        ("within ?, never on", "on", [[0], [1]], 0.000000002, "1 ns"),
+    ],
+)
+def test_a_value_is_rounded_to_three_digits_or_to_whole_numbers_on_the_weaker_side(
+    tmp_path: Path, property_: str, columns: str, rows: Sequence[Sequence[Any]], step: float, value: str
+) -> None:
+    path = recording(tmp_path / "run.csv", columns, rows, step)
+    mined_ = mined(tmp_path, text(property_), path)
+    values = mined_.values()
+    assert values is not None
+    assert [each.text for each in values] == [value]
+    filled = mined_.template.text(values)
+    assert filled == text(property_.replace("?", value))
+    assert passes(filled, path)
+
+
+def drawn(chance: Random) -> float:
+    return chance.uniform(-4, 4) * 10.0 ** chance.choice((-3, 0, 0, 0, 4))
+
+
+@pytest.mark.parametrize("template", [*THRESHOLDS, *BOUNDS, "always v =={?} w", "never s >= ?", "always s > ?"])
+def test_all_recordings_pass_what_is_rounded_and_one_fails_what_is_tighter_than_exact(
+    tmp_path: Path, template: str
+) -> None:
+    chance = Random(template)
+    for case in range(4):
+        files = [
+            recording(
+                tmp_path / f"{case}_{k}.csv",
+                "v,w,s",
+                [(drawn(chance), drawn(chance), drawn(chance)) for _ in range(chance.randint(2, 6))],
+                step=chance.uniform(1e-6, 4),
+            )
+            for k in range(2)
+        ]
+        mined_ = mined(tmp_path, text(template), *files)
+        rounded, exact = mined_.values(), mined_.values(exact=True)
+        if rounded is None or exact is None:
+            continue
+        assert all(passes(mined_.template.text(each), path) for each in (rounded, exact) for path in files)
+        (found_,) = exact
+        if found_.number > 0:
+            tighter = mined_.template.text([replace(found_, number=found_.number - 1)])
+            assert not all(passes(tighter, path) for path in files)
+        (one, other) = (each.sought.values.at(each.number) for each in (*exact, *rounded))
+        assert abs(one - other) <= max(1e-2 * abs(one), 1 if found_.sought.values.numbers is None else 0)
+
+
+def test_what_is_rounded_already_stays_and_only_gets_weaker() -> None:
+    chance = Random(7)
+    for direction, numbers in product((WEAKER, -WEAKER), (None, DOUBLES, SINGLES, Numbers(Kind.INTEGER, 0, 255))):
+        role = Role.DURATION if numbers is None else Role.THRESHOLD
+        among = values(role, direction, [numbers])
+        for _ in range(300):
+            number = chance.randint(0, among.last)
+            rounded = among.rounded(number)
+            assert number <= rounded <= among.last
+            assert among.rounded(rounded) == rounded
+        assert (among.rounded(0), among.rounded(among.last)) == (0, among.last)
 
 
 # --- several recordings -----------------------------------------------------------------------------------------------
@@ -631,6 +733,44 @@ line 5 of props.txt:
   passes in 2 recordings
 """
     )
+
+
+ROUNDED = """\
+line 3 of props.txt (top):
+  top: never v > 2.35
+  rounded outwards; `--exact` gives 2.34567
+"""
+
+
+def test_values_are_rounded_outwards_which_is_reported_unless_they_are_to_be_exact(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    recording(Path("c.csv"), "v,on", [[1.23456, 0], [2.34567, 1]], step=1.23456)
+    arguments = ["mine", "props.txt", "b.csv", "c.csv", "--each", "--write", "tight.txt"]
+    assert main(arguments) == 0
+    shown = capsys.readouterr().out
+    assert shown.startswith(ROUNDED)
+    assert "  c.csv by itself: 2.35\n" in shown
+    assert "  eventually on within 1.24 s\n  rounded outwards; `--exact` gives 1.23456 s\n" in shown
+    assert Path("tight.txt").read_text() == PROPS.replace("> ?", "> 2.35").replace("within ?", "within 1.24 s")
+    assert main([*arguments, "--exact"]) == 0
+    shown = capsys.readouterr().out
+    assert "rounded" not in shown
+    assert "  top: never v > 2.34567\n" in shown
+    assert "  c.csv by itself: 2.34567\n" in shown
+    assert Path("tight.txt").read_text() == PROPS.replace("> ?", "> 2.34567").replace("within ?", "within 1.23456 s")
+
+
+def test_the_json_document_has_the_exact_value_and_the_rounded_one(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    recording(Path("c.csv"), "v,on", [[2.34567, 0], [1, 1]], step=1.23456)
+    for more in ([], ["--exact"]):
+        assert main(["mine", "props.txt", "c.csv", "--format", "json", *more]) == 0
+        top, bound = json.loads(capsys.readouterr().out)["properties"]
+        assert (top["value"], top["text"]) == (2.34567, "top: never v > 2.34567")
+        assert top["rounded"] == {"value": 2.35, "value_ns": None, "written": "2.35", "text": "top: never v > 2.35"}
+        assert (bound["value_ns"], bound["rounded"]["value_ns"]) == (1_234_560_000, 1_240_000_000)
 
 
 def test_the_specification_is_written_with_its_comments(folder: Path) -> None:

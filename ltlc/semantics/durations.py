@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from decimal import Decimal
+
 Nanoseconds = int
 """A time or a duration. Times are integers everywhere: a double near 1.7e9 s is 0.24 µs wide."""
 
@@ -20,6 +22,15 @@ def duration_text(duration: Nanoseconds) -> str:
     """`duration` as the language writes it, in the largest unit that needs no decimals: `1500 ms`, `2 min`."""
     unit = next((u for u in reversed(UNITS) if duration % UNITS[u] == 0), "ns") if duration else "s"
     return f"{duration // UNITS[unit]} {unit}"
+
+
+def readable(duration: Nanoseconds) -> str:
+    """`duration` exactly, with decimals where that is easier to read: `1.5 s`, `12.4 ms`, `50 ms`, `2 min`."""
+    written = duration_text(duration)
+    if duration % UNITS["s"] == 0 or len(written.partition(" ")[0]) <= 3:
+        return written
+    unit = next(unit for unit in ("s", "ms", "us") if duration >= UNITS[unit])
+    return f"{Decimal(duration) / UNITS[unit]:f} {unit}"
 
 
 def seconds_text(time: Nanoseconds) -> str:

@@ -6,6 +6,7 @@ import math
 import re
 from collections import Counter
 from collections.abc import Collection
+from decimal import ROUND_CEILING, ROUND_FLOOR, Decimal
 from enum import IntEnum
 from typing import assert_never
 
@@ -57,6 +58,11 @@ def _shortest(single: float) -> float:
     """The double with the fewest digits to which `single` is the nearest binary32."""
     rounded = (float(f"{single:.{digits}g}") for digits in range(1, 10))
     return next(number for number in rounded if SINGLES.nearest(number) == single)
+
+
+def outwards(value: Decimal, step: Decimal, is_upper: bool) -> Decimal:
+    """The multiple of `step`, a power of ten, nearest to `value` that is not below it, or not above it."""
+    return (value / step).to_integral_value(ROUND_CEILING if is_upper else ROUND_FLOOR) * step
 
 
 _SUM, _PRODUCT, _FACTOR, _VALUE = range(4)

@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from decimal import ROUND_CEILING, ROUND_FLOOR, Decimal
+from decimal import Decimal
 
-from ltlc.semantics.durations import UNITS, Nanoseconds
+from ltlc.semantics.durations import Nanoseconds, readable
+from ltlc.specification.text import outwards
 from ltlc.specification.wire import DOUBLES, Kind, Numbers
 
 MOST_DIFFERENT = 8
@@ -70,8 +71,7 @@ class Values:
         room = ROOM * (min(abs(extreme), spread) or spread)
         finest = 0 if self.possible.kind is Kind.INTEGER else -400
         step = Decimal(1).scaleb(max(finest, (room / 2).adjusted()))
-        limit = extreme + room if is_upper else extreme - room
-        rounded = (limit / step).to_integral_value(ROUND_CEILING if is_upper else ROUND_FLOOR) * step
+        rounded = outwards(extreme + room if is_upper else extreme - room, step, is_upper)
         is_possible = self.possible.least < rounded < self.possible.most
         return f"{rounded.normalize():f}" if is_possible else None
 
@@ -118,6 +118,4 @@ def time_limit(measured: Nanoseconds, least: Nanoseconds) -> Nanoseconds:
 
 def duration(time: Nanoseconds) -> str:
     """A duration to three digits."""
-    rounded = round(time, -max(0, len(str(time)) - 3))
-    unit = next((unit for unit in ("s", "ms", "us") if rounded >= UNITS[unit]), "ns")
-    return f"{rounded / UNITS[unit]:.12g} {unit}"
+    return readable(round(time, -max(0, len(str(time)) - 3)))

@@ -27,6 +27,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--each", action="store_true", help="also report the tightest value of each recording by itself"
     )
     parser.add_argument(
+        "--exact", action="store_true", help="print and write the tightest values to the last digit, not rounded"
+    )
+    parser.add_argument(
         "--write", metavar="FILE", type=Path, help="write the specification with the values to FILE, if all are found"
     )
     arguments.add_message_paths(parser)
@@ -66,18 +69,19 @@ def run(options: argparse.Namespace) -> int:
         report(error.diagnostics)
         return FINDING
     report(mined.diagnostics)
-    sys.stdout.write({"text": reports.text, "json": reports.document}[options.format](mined))
-    return mined.exit_code if options.write is None else _write(mined, options.write)
+    sys.stdout.write(reports.document(mined) if options.format == "json" else reports.text(mined, options.exact))
+    return mined.exit_code if options.write is None else _write(mined, options.write, options.exact)
 
 
-def _write(mined: Mined, path: Path) -> int:
+def _write(mined: Mined, path: Path, exact: bool) -> int:
     """Write the specification with its values to `path`, if all were found and all recordings read; the exit code."""
-    if mined.values is None or mined.unusable:
+    values = mined.values(exact)
+    if values is None or mined.unusable:
         why = "a recording could not be read" if mined.unusable else "not all values were found"
         print(f"ltlc: {path} is not written: {why}", file=sys.stderr)
         return mined.exit_code
     try:
-        write_text(path, mined.template.text(mined.values))
+        write_text(path, mined.template.text(values))
     except OSError as error:
         print(f"ltlc: {path} cannot be written: {error.strerror or error}", file=sys.stderr)
         return UNUSABLE

@@ -97,11 +97,12 @@ class Mined:
             return 1
         return 0 if results == {Result.FOUND} else 3
 
-    @property
-    def values(self) -> list[Trial] | None:
-        """What was found, if all of it was."""
+    def values(self, exact: bool = False) -> list[Trial] | None:
+        """What was found, if all of it was: the tightest values if `exact`, or else these rounded outwards."""
         found = [finding.trial for finding in self.findings if finding.result is Result.FOUND]
-        return found if len(found) == len(self.findings) else None
+        if len(found) != len(self.findings):
+            return None
+        return found if exact else [each.rounded for each in found]
 
 
 def mine(

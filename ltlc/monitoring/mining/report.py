@@ -17,18 +17,24 @@ from ltlc.runtime.reports import printable
 from ltlc.runtime.times import seconds
 
 
-def text(mined: Mined) -> str:
-    """A paragraph for each value: the property with it, what decides it, and what the other recordings say."""
-    return "\n".join("".join(f"{line}\n" for line in _lines(mined, finding)) for finding in mined.findings)
+def text(mined: Mined, exact: bool = False) -> str:
+    """A paragraph for each value: the property with it, what decides it, and what the other recordings say.
+
+    Values are rounded outwards unless they are to be `exact`.
+    """
+    return "\n".join("".join(f"{line}\n" for line in _lines(mined, finding, exact)) for finding in mined.findings)
 
 
-def _lines(mined: Mined, finding: Finding) -> Iterator[str]:
+def _lines(mined: Mined, finding: Finding, exact: bool) -> Iterator[str]:
     sought, file = finding.sought, mined.template.source.name
     place = f"line {sought.line} of {file}"
     yield printable(place if sought.label == f"line {sought.line}" else f"{place} ({sought.label})") + ":"
     match finding.result:
         case Result.FOUND:
-            yield f"  {printable(mined.template.property_text(finding.trial))}"
+            shown = finding.trial if exact else finding.trial.rounded
+            yield f"  {printable(mined.template.property_text(shown))}"
+            if shown != finding.trial:
+                yield f"  rounded outwards; `--exact` gives {finding.trial.text}"
             yield from _decided(finding)
         case Result.NONE:
             assert finding.failure is not None
@@ -39,7 +45,7 @@ def _lines(mined: Mined, finding: Finding) -> Iterator[str]:
             yield f"  every value passes, even {finding.trial.text}{never}"
         case Result.NOT_STARTED:
             yield "  not started in any recording"
-    yield from _others(mined, finding)
+    yield from _others(mined, finding, exact)
 
 
 def _decided(finding: Finding) -> Iterator[str]:
@@ -68,13 +74,14 @@ def _shown(failure: Failure) -> Iterator[str]:
             yield f"    {found.text()}"
 
 
-def _others(mined: Mined, finding: Finding) -> Iterator[str]:
+def _others(mined: Mined, finding: Finding, exact: bool) -> Iterator[str]:
     """What recordings say that do not decide."""
     if finding.result is Result.FOUND and len(finding.started) > 1:
         yield f"  passes in {len(finding.started)} recordings"
     for path, number in finding.alone.items():
-        alone = "no value passes" if number is None else Trial(finding.sought, number).text
-        yield f"  {_name(path)} by itself: {alone}"
+        alone = None if number is None else Trial(finding.sought, number)
+        shown = alone if alone is None or exact else alone.rounded
+        yield f"  {_name(path)} by itself: {'no value passes' if shown is None else shown.text}"
     for path, remarks in finding.not_started.items():
         yield f"  not started in {_name(path)}: {'; '.join(remarks)}"
     if not_asked := _not_asked(mined, finding):
@@ -92,7 +99,7 @@ def _name(path: Path) -> str:
 
 
 def document(mined: Mined) -> str:
-    """The JSON document of `ltlc mine`."""
+    """The JSON document of `ltlc mine`: exact values, and beside each that was found the rounded one."""
     found = {
         "specification": mined.template.source.name,
         "recordings": [str(path) for path in mined.recordings],
@@ -118,6 +125,7 @@ def _property(mined: Mined, finding: Finding) -> dict[str, Any]:
         "result": finding.result.name.lower(),
         **_value(finding.trial if is_found else None),
         "text": mined.template.property_text(finding.trial) if is_found else None,
+        "rounded": _rounded(mined, finding.trial) if is_found else None,
         "decided_by": finding.failure and _failure(finding.failure),
         "started": [str(path) for path in finding.started],
         "not_started": [str(path) for path in finding.not_started],
@@ -140,6 +148,10 @@ def _failure(failure: Failure) -> dict[str, Any]:
         "remarks": reports.explanation(session, track),
         "violations": None if violations is None else violations.document(),
     }
+
+
+def _rounded(mined: Mined, trial: Trial) -> dict[str, Any]:
+    return {**_value(trial.rounded), "text": mined.template.property_text(trial.rounded)}
 
 
 def _value(trial: Trial | None) -> dict[str, Any]:

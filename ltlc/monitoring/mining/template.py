@@ -53,6 +53,11 @@ class Trial:
         return self.sought.values.text(self.number)
 
     @property
+    def rounded(self) -> Trial:
+        """The same value, or a slightly weaker one that is easier to read."""
+        return Trial(self.sought, self.sought.values.rounded(self.number))
+
+    @property
     def command(self) -> syntax.PropertyCommand:
         """The property with that value."""
         return filled(self.sought.parameter, self.sought.values.literal(self.number), self.text)

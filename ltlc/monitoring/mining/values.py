@@ -9,14 +9,18 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from decimal import Decimal
 from math import inf
 
 from ltlc.frontend.language.durations import LONGEST
 from ltlc.frontend.language.parameters import Role
-from ltlc.monitoring.mining.monotone import STRONGER
-from ltlc.semantics.durations import UNITS, Nanoseconds, duration_text, seconds_text
-from ltlc.specification.text import number_text
+from ltlc.monitoring.mining.monotone import STRONGER, WEAKER
+from ltlc.semantics.durations import UNITS, Nanoseconds, readable, seconds_text
+from ltlc.specification.text import number_text, outwards
 from ltlc.specification.wire import DOUBLES, EXACT, Kind, Numbers
+
+DIGITS = 3
+"""Significant digits of a rounded value, which has more where whole numbers, or whole seconds, have more."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,8 +54,20 @@ class Values:
     def text(self, number: int) -> str:
         """The value with that number as the language writes it, which reads as exactly that."""
         if self.numbers is None:
-            return _duration(self._rank(number))
+            return readable(self._rank(number))
         return number_text(self.numbers.at(self._rank(number)), self.numbers.kind is Kind.SINGLE)
+
+    def rounded(self, number: int) -> int:
+        """The number of the value with that `number`, or of the next weaker one that has `DIGITS`.
+
+        Integers stay as they are: they are counts and the like, none of whose digits is noise.
+        """
+        if self.numbers is not None and self.numbers.kind is Kind.INTEGER:
+            return number
+        exact = Decimal(seconds_text(self._rank(number)) if self.numbers is None else self.text(number))
+        step = Decimal(1).scaleb(min(0, exact.adjusted() - DIGITS + 1))
+        easy = outwards(exact, step, is_upper=self.direction == WEAKER)
+        return self.number(int(easy * UNITS["s"]) if self.numbers is None else self.numbers.nearest(float(easy)))
 
     def _rank(self, number: int) -> int:
         return self.most - number if self.direction == STRONGER else self.least + number
@@ -81,10 +97,3 @@ def _finest(beside: Sequence[Numbers]) -> Numbers:
     if kinds != {Kind.INTEGER}:
         return Numbers(kinds.pop()) if len(kinds) == 1 else DOUBLES
     return Numbers(Kind.INTEGER, min(each.least for each in beside), max(each.most for each in beside))
-
-
-def _duration(duration: Nanoseconds) -> str:
-    """`duration` in a unit that is easy to read, exactly."""
-    written = duration_text(duration)
-    is_short = duration % UNITS["s"] == 0 or len(written.partition(" ")[0]) <= 3
-    return written if is_short else f"{seconds_text(duration)} s"
