@@ -302,7 +302,7 @@ def test_quiet_build_and_run_write_their_files_without_a_word(here: Path, capsys
     assert main(["run", "-q", "a.ltlc", "drive.csv", "--output", "out.mcap"]) == 1
     output = capsys.readouterr()
     assert (here / "out.mcap").exists()
-    assert "violated at 1 s" in output.out
+    assert "violated at +1 s" in output.out
     assert output.err == ""
 
 
