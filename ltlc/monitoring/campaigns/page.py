@@ -2,26 +2,33 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
+from urllib.parse import quote
 
 import jinja2
 
 from ltlc import __version__
 from ltlc.monitoring.campaigns.forms import remarks
-from ltlc.monitoring.campaigns.places import Found
+from ltlc.monitoring.campaigns.places import Found, is_address
 from ltlc.monitoring.campaigns.tally import Failing, PropertyTally, Result, Tally
 from ltlc.runtime.reports import printable, value_text
-from ltlc.runtime.times import SECOND, Scale, seconds_text
+from ltlc.runtime.times import SECOND, Scale, seconds_text, span_text
 
 SIDE_BY_SIDE = 4
 """How many violations of a property are shown side by side."""
 
+TIMELINE = 200
+"""How wide a timeline is, in the units of its drawing."""
 
-def summary_page(specification: str, tally: Tally, found: Found, english: Mapping[str, str]) -> str:
+
+def summary_page(specification: str, tally: Tally, found: Found, english: Mapping[str, str], folder: Path) -> str:
     """The page: which properties fail where, first violations side by side, and what was never triggered.
 
-    `english` says in words what each property means, by its label.
+    `english` says in words what each property means, by its label. The page links to recordings of this machine, as
+    seen from the `folder` that it is written to.
     """
     environment = jinja2.Environment(
         loader=jinja2.PackageLoader("ltlc.monitoring.campaigns", "."),
@@ -31,6 +38,7 @@ def summary_page(specification: str, tally: Tally, found: Found, english: Mappin
         undefined=jinja2.StrictUndefined,
     )
     environment.filters["shown"] = printable
+    environment.filters["link"] = lambda name: _link(name, folder)
     properties = list(tally.properties.values())
     return environment.get_template("page.html").render(
         specification=specification,
@@ -42,7 +50,13 @@ def summary_page(specification: str, tally: Tally, found: Found, english: Mappin
         idle=[each for each in properties if each.is_idle],
         errors=tally.errors,
         english=english,
+        width=TIMELINE,
     )
+
+
+def _link(name: str, folder: Path) -> str:
+    """The relative address of a recording, empty if it is not on this machine."""
+    return "" if is_address(name) else quote(os.fsencode(os.path.relpath(name, folder)))
 
 
 def _row(of_one: PropertyTally) -> dict[str, Any]:
@@ -59,8 +73,26 @@ def _failures(of_one: PropertyTally) -> dict[str, Any]:
         "count": of_one.counts[Result.VIOLATED],
         "places": [(each.recording, _moment(each.found.report["decided_at"])) for each in of_one.failing],
         "first": [each.recording for each in first],
+        "timelines": [_timeline(each) for each in first],
         "lines": _side_by_side(first),
     }
+
+
+def _timeline(failing: Failing) -> dict[str, Any] | None:
+    """What is drawn of a recording: where the property is violated, or only where it first is if no more is known.
+
+    None if the recording has no length.
+    """
+    if failing.beginning is None or failing.end is None or failing.end <= failing.beginning:
+        return None
+    length = failing.end - failing.beginning
+    first = failing.found.report["decided_at"]
+    parts = []
+    for each in failing.found.report.get("violations") or [first]:
+        width = max(TIMELINE * each.get("lasted_ns", 0) / length, 2)
+        start = TIMELINE * (each["time_ns"] - failing.beginning) / length
+        parts.append((round(min(start, TIMELINE - width), 2), round(width, 2)))
+    return {"length": span_text(length), "parts": parts}
 
 
 def _side_by_side(failing: list[Failing]) -> list[tuple[str, list[str]]]:
