@@ -117,7 +117,7 @@ EPISODES = SIMPLE["stop sign"].replace("> 1", "> 0.5")
 STATES = SIMPLE["model states"]
 YAW = "never robot.orientation > 1"
 FAULTS = {
-    "the sign of a slope": (SLOPE, "value - values[first + 1]", "values[first + 1] - value"),
+    "the sign of a slope": (SLOPE, "value - known[first + 1]", "known[first + 1] - value"),
     "a slope without time": (SLOPE, "divide(change, seconds(last - before))", "change"),
     "an episode that opens and closes at one step": (EPISODES, "self.is_open = False\n            return", "pass"),
     "an episode that is not counted": (EPISODES, "self.count += 1", "self.count += 0"),

@@ -231,7 +231,7 @@ FAULTS = {
     ),
     "news lost at a tick": ("_rate_ = 10\n" + GOAL, "self.heard.update(numbers)", "self.heard = set(numbers)"),
     "news at every tick": ("_rate_ = 10\n" + GOAL, "self.heard.clear()", "pass"),
-    "news that is taken for held": (GOAL, "self.known[place] = False", "pass"),
+    "news that is taken for held": (GOAL, "known[place] = is_new", "known[place] = True"),
     "ticks before clock steps": (
         "_rate_ = 30\n" + STOP,
         "changes = self._clocks.hold(time)",

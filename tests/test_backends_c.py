@@ -651,7 +651,7 @@ def test_where_temporary_files_cannot_be_written_no_fault_is_reported_but_the_fo
     code = cli.main(["build", str(tmp_path / "props.txt"), "--target", "c", "-o", str(tmp_path / "props.c")])
     err = capsys.readouterr().err
     assert code == 2
-    assert re.search(r"ltlc: /.*: No space left on device; make room there, or name", err)
+    assert re.search(r"ltlc: /.*: No space left on device; free some space, or set TMPDIR", err)
     assert "fault" not in err
     assert not (tmp_path / "props.c").exists()
 

@@ -89,7 +89,7 @@ def test_run_says_how_far_into_the_recording_it_is(terminal: Terminal, tmp_path:
     recording.write_text("time,robot.velocity\n0,1\n0.5,1\n", encoding="utf-8")
     with redirect_stderr(terminal):
         main(["run", file(tmp_path), str(recording)])
-    assert "\r\x1b[Kltlc: judging drive\\x1b.csv, 2 rows, up to 0.5 s (" in terminal.getvalue()
+    assert "\r\x1b[Kltlc: judging drive\\x1b.csv, 2 rows, up to +0.5 s (" in terminal.getvalue()
     assert terminal.getvalue().endswith("\r\x1b[K")
 
 

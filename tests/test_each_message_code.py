@@ -101,8 +101,8 @@ def test_a_violation_is_told_once_with_the_time_of_its_message() -> None:
     assert isinstance(track.slices, OpenedSlices)
     [(text, line)] = track.slices.untold()
     told = json.loads(line)
-    assert "p[prog at 0.000000005 s]" in text
+    assert "p[prog at +0.000000005 s]" in text
     assert (told["message"], told["opened_at"]["time"], told["verdict"]) == (1, 5e-9, "violated")
     assert "id" not in told
-    assert track.slices.listed() == {"violated messages": "0.000000005 s", "open messages": "0.000000012 s"}
+    assert track.slices.listed() == {"violated messages": "+0.000000005 s", "open messages": "+0.000000012 s"}
     assert not [*track.slices.untold()]

@@ -250,7 +250,7 @@ def test_the_lens_of_a_property_that_is_gone_says_so(editor: Editor) -> None:
     editor.open(SOUND)
     arguments = [URI, "no_such"]
     assert editor.request("workspace/executeCommand", {"command": "ltlc.showAutomaton", "arguments": arguments}) is None
-    assert "there is no property no_such" in editor.next("window/showMessage")["params"]["message"]
+    assert "there is no longer a property no_such" in editor.next("window/showMessage")["params"]["message"]
 
 
 def test_a_text_that_is_closed_has_no_findings(editor: Editor) -> None:

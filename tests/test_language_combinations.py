@@ -60,12 +60,12 @@ def test_more_than_a_million_combinations_have_no_count() -> None:
 @pytest.mark.parametrize(
     ("said", "message"),
     [
-        ("any(ox < tx)", "`ox` and `tx` are no fields of one array of messages"),
+        ("any(ox < tx)", "`ox` and `tx` are not fields of one array of messages"),
         ("any(ox < tx over (ox), (v))", "`over` lists arrays, but `v` is a number"),
         ("any(ox < tx over (ox), (tx), (ox))", "`ox` is listed twice"),
         ("any(ox < tx over (ox), (scan))", "`tx` is missing from the lists of `over`"),
         ("any(ox < 1 over (ox), (tx))", "`over` lists `tx`, which the condition does not use"),
-        ("any(ox < tx over (ox, tx))", "`ox` and `tx` are no fields of one array of messages"),
+        ("any(ox < tx over (ox, tx))", "`ox` and `tx` are not fields of one array of messages"),
     ],
 )
 def test_lists_that_do_not_fit_are_reported(said: str, message: str) -> None:
