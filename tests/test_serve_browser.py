@@ -20,6 +20,7 @@ HOSTILE = f'</textarea></svg><script>{TAKEN}</script><img src=x onerror="{TAKEN}
 QUOTED = HOSTILE.replace('"', '\\"')
 TEXT = "never robot.velocity > 2\n"
 TAB, ENTER, LEFT, UP, RIGHT, DOWN = "\ue004", "\ue007", "\ue012", "\ue013", "\ue014", "\ue015"
+CONTROL = "\ue009"
 
 
 @pytest.fixture(scope="module")
@@ -200,6 +201,96 @@ def test_a_curve_is_drawn_with_the_pointer(browser: chromium.Browser) -> None:
     assert drawn == sorted(drawn)
     assert drawn[-1] > 2 > drawn[0] > 0
     wait_for_verdict(browser, "violated")
+
+
+def step(name: str, at: int) -> str:
+    return f"document.querySelector('[aria-label=\"{name}, step {at}\"]')"
+
+
+def type_in_cell(browser: chromium.Browser, at: int, text: str) -> None:
+    browser.run(f"{step('robot.velocity', at)}.select()")
+    press(browser, *text)
+
+
+def undo(browser: chromium.Browser, key: str = "z") -> None:
+    keys = [("keyDown", CONTROL), ("keyDown", key), ("keyUp", key), ("keyUp", CONTROL)]
+    actions = [{"type": type_, "value": value} for type_, value in keys]
+    browser.act({"type": "key", "id": "keyboard", "actions": actions})
+
+
+def test_edits_of_the_text_and_the_run_are_undone_in_turn_and_redone(browser: chromium.Browser) -> None:
+    assert browser.run("return document.getElementById('undo').disabled")
+    type_in_cell(browser, 1, "1.5")
+    type_in_cell(browser, 2, "9")
+    wait_for_verdict(browser, "violated")
+    write(browser, "never robot.velocity > 20\n")
+    wait_for_verdict(browser, "presumably satisfied")
+    click(browser, "#table .row-tools button")
+    seen = [["0", "0", "1.5", "9", "0", "0"], ["0", "1.5", "9", "0", "0"], ["0", "1.5", "9", "0", "0"]]
+    seen += [["0", "1.5", "0", "0", "0"], ["0"] * 5]
+    assert cells(browser, "robot.velocity") == seen[0]
+    for wanted in seen[1:]:
+        undo(browser)
+        assert cells(browser, "robot.velocity") == wanted
+    assert browser.run("return document.getElementById('text').value") == TEXT
+    assert browser.run("return document.getElementById('undo').disabled")
+    undo(browser, "y")
+    undo(browser, "y")
+    wait_for_verdict(browser, "violated")
+    undo(browser, "y")
+    wait_for_verdict(browser, "presumably satisfied")
+    click(browser, "#redo")
+    assert cells(browser, "robot.velocity") == seen[0]
+    assert browser.run("return document.getElementById('redo').disabled")
+
+
+def test_an_example_that_was_opened_gives_back_text_and_run_when_it_is_undone(browser: chromium.Browser) -> None:
+    type_in_cell(browser, 0, "1.5")
+    write(browser, "always robot.velocity > 1 # mine")
+    browser.run(
+        "const examples = document.getElementById('examples'); examples.value = 1;"
+        "examples.dispatchEvent(new Event('change'))"
+    )
+    browser.wait_until("return document.querySelectorAll('#table tbody tr').length !== 5")
+    click(browser, "#undo")
+    wait_for_verdict(browser, "violated")
+    assert browser.run("return document.getElementById('text').value") == "always robot.velocity > 1 # mine"
+    assert cells(browser, "robot.velocity") == ["1.5", "0", "0", "0", "0"]
+
+
+def test_an_edit_after_an_undo_cannot_be_redone_over(browser: chromium.Browser) -> None:
+    type_in_cell(browser, 1, "1")
+    undo(browser)
+    type_in_cell(browser, 2, "2")
+    undo(browser, "y")
+    assert cells(browser, "robot.velocity") == ["0", "0", "2", "0", "0"]
+
+
+def test_a_text_with_a_mistake_is_undone_with_the_cursor_where_it_was(browser: chromium.Browser) -> None:
+    browser.run("const area = document.getElementById('text'); area.focus(); area.setSelectionRange(20, 20)")
+    press(browser, *">>")
+    browser.wait_until("return document.querySelector('.findings .error')")
+    undo(browser)
+    browser.wait_until("return !document.querySelector('.findings .error')")
+    assert browser.run("return document.getElementById('text').selectionStart") == 20
+    assert cells(browser, "robot.velocity") == ["0"] * 5
+
+
+def test_columns_of_many_signals_scroll_while_the_step_and_the_page_stay(browser: chromium.Browser) -> None:
+    write(browser, "".join(f"never signal_{number}.velocity > {number}\n" for number in range(1, 21)))
+    browser.wait_until("return document.querySelectorAll('.curve').length === 20")
+    wait_for_verdict(browser, "presumably satisfied")
+    assert browser.run("return document.documentElement.scrollWidth <= innerWidth")
+    script = """
+    const table = document.getElementById('table'), left = table.getBoundingClientRect().left;
+    table.scrollLeft = 500;
+    return [table.scrollLeft, table.querySelector('tbody th').getBoundingClientRect().left - left];
+    """
+    assert browser.run(script) == [500, 0]
+    assert browser.run(
+        "const { scrollHeight, clientHeight } = document.getElementById('curves');"
+        "return scrollHeight > 2 * clientHeight && clientHeight <= innerHeight"
+    )
 
 
 def test_an_example_run_is_loaded_by_a_click(browser: chromium.Browser) -> None:

@@ -47,9 +47,9 @@ export class Curves {
     for (const curve of this.curves) curve.choose();
   }
 
-  changed(at) {
+  changed(at, curve) {
+    this.edited(curve);
     this.chose(at);
-    this.edited();
   }
 
   // Show the changes of verdict of each property; null while they are not known.
@@ -195,7 +195,7 @@ class Curve {
     }
     this.last = to;
     this.refresh();
-    this.curves.changed(to.at);
+    this.curves.changed(to.at, this);
   }
 
   key(event) {
@@ -209,6 +209,6 @@ class Curve {
     const value = (Number.isFinite(now) ? now : 0) + by[1] * step;
     this.set(at, this.isNumber ? Math.round(value / step) * step : value);
     this.refresh();
-    this.curves.changed(at);
+    this.curves.changed(at, this);
   }
 }

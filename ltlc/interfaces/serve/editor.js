@@ -16,8 +16,13 @@ export class Editor {
   get text() {
     return this.area.value;
   }
+  // The cursor goes behind what is different.
   set text(text) {
+    const old = this.area.value;
+    let end = 0;
+    while (end < text.length && text.at(-1 - end) === old.at(-1 - end)) end++;
     this.area.value = text;
+    this.area.setSelectionRange(text.length - end, text.length - end);
     this.findings = [];
     this.draw();
   }

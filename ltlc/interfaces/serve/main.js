@@ -6,15 +6,17 @@ import { Curves } from "./curves.js";
 import { $, badge, later, make, VERDICTS, words } from "./dom.js";
 import { Editor } from "./editor.js";
 import { markHere, showFindings, summary } from "./findings.js";
+import { History } from "./history.js";
 import { keep, kept } from "./link.js";
 import { showCard, showExplanation, showMachine, showMaps, showProperties, showReason } from "./properties.js";
 import { MOST_STEPS, Run } from "./run.js";
 import { RunTable } from "./table.js";
 
 const run = new Run();
-const editor = new Editor($("text"), document.querySelector(".marks"), textChanged, cursorMoved);
-const table = new RunTable($("table"), run, { edited: () => runChanged(curves), reshaped, chose, failed });
-const curves = new Curves($("curves"), run, { edited: () => runChanged(table), chose });
+const editor = new Editor($("text"), document.querySelector(".marks"), textEdited, cursorMoved);
+const table = new RunTable($("table"), run, { edited: (what) => runEdited(what, curves), reshaped: rowsEdited, chose, failed });
+const curves = new Curves($("curves"), run, { edited: (what) => runEdited(what, table), chose });
+const edits = new History(state, showState, showUndo);
 
 let start, findings = [], properties = [], judged = null, rate = null, chosen = 0, at = null, shape = "", isStale = true, isNew = true;
 const labels = () => properties.map((property) => property.label);
@@ -24,6 +26,11 @@ const question = (more = {}) => ({ text: editor.text, encoding: $("encoding").va
 
 const checkSoon = later(80, () => check());
 const analyseSoon = later(500, () => check(true));
+
+function textEdited() {
+  textChanged();
+  edits.edited(editor);
+}
 
 function textChanged() {
   $("state").textContent = "reading…";
@@ -57,7 +64,11 @@ function take(answer) {
     reshapeIfOther(JSON.stringify([labels(), answer.signals]));
     showAll();
     askMore();
-  } else tell(null);
+  } else {
+    if (!shape) reshaped();
+    tell(null);
+  }
+  edits.settle();
   keepSoon();
 }
 
@@ -88,17 +99,23 @@ const judgeSoon = later(60, judge);
 const keepAll = () => keep({ text: editor.text, encoding: $("encoding").value, rows: run.current });
 const keepSoon = later(400, keepAll);
 
-// The cells have changed; `other` shows them, too.
-function runChanged(other) {
+// Somebody has changed cells; `other` shows them, too.
+function runEdited(what, other) {
+  edits.edited(what);
   other.refresh();
   judgeSoon();
   keepSoon();
 }
 
+function rowsEdited() {
+  edits.edited();
+  reshaped();
+}
+
 // The rows, or the signals, are others than before.
 function reshaped() {
   if (at !== null && at >= run.rows.length) at = null;
-  $("count").value = run.rows.length;
+  if (run.rows.length) $("count").value = run.rows.length;
   table.draw(labels());
   curves.draw(labels());
   chose(at);
@@ -116,7 +133,7 @@ function chose(number) {
 function load(steps) {
   run.load(steps, rate);
   at = null;
-  reshaped();
+  rowsEdited();
   $("run-title").scrollIntoView({ block: "nearest" });
 }
 
@@ -220,14 +237,45 @@ function failed(error) {
 }
 
 function open({ text, encoding = start.encodings[0], rows = [] }) {
-  editor.text = text;
-  $("encoding").value = start.encodings.includes(encoding) ? encoding : start.encodings[0];
-  run.rows = rows.map(({ time, cells }) => ({ time: String(time), cells: { ...cells } }));
   chosen = 0;
   at = null;
   isNew = true;
+  showState({
+    text,
+    encoding: start.encodings.includes(encoding) ? encoding : start.encodings[0],
+    rows: rows.map(({ time, cells }) => ({ time: String(time), cells: { ...cells } })),
+  });
+  edits.edited();
+}
+
+// What can be undone. Cells of signals that are gone belong to it: these may come back.
+function state() {
+  return { text: editor.text, encoding: $("encoding").value, rows: run.rows };
+}
+
+function showState({ text, encoding, rows }) {
+  editor.text = text;
+  $("encoding").value = encoding;
+  run.rows = rows;
+  isStale = true; // until the text is read
+  reshaped();
   shape = "";
   textChanged();
+}
+
+function showUndo() {
+  $("undo").disabled = !edits.past.length;
+  $("redo").disabled = !edits.future.length;
+}
+
+// Browsers undo in one field only, and forget when a script changes it; the fields beside buttons are left to them.
+function undoKey(event) {
+  const key = event.key.toLowerCase();
+  if (!(event.ctrlKey || event.metaKey) || event.altKey || !["z", "y"].includes(key)) return;
+  if (event.target.closest("dialog, .tools input")) return;
+  event.preventDefault();
+  if (key === "y" || event.shiftKey) edits.redo();
+  else edits.undo();
 }
 
 function openExample({ text, run: csv }) {
@@ -239,7 +287,7 @@ function paste(csv) {
   try {
     run.paste(csv);
     isNew = true;
-    reshaped();
+    rowsEdited();
   } catch (error) {
     failed(error);
   }
@@ -250,7 +298,7 @@ function even() {
   const every = Number($("every").value);
   if (!(every > 0)) return;
   run.even(count, every);
-  reshaped();
+  rowsEdited();
 }
 
 async function copy(button, text) {
@@ -265,7 +313,13 @@ function listen() {
     openExample(start.examples[$("examples").value]);
     $("examples").value = "";
   });
-  $("encoding").addEventListener("change", textChanged);
+  $("encoding").addEventListener("change", () => {
+    textChanged();
+    edits.edited();
+  });
+  $("undo").addEventListener("click", () => edits.undo());
+  $("redo").addEventListener("click", () => edits.redo());
+  document.addEventListener("keydown", undoKey);
   $("even").addEventListener("click", even);
   $("copy").addEventListener("click", () => copy($("copy"), run.csv()));
   $("share").addEventListener("click", () => {

@@ -106,7 +106,7 @@ export class RunTable {
   typed(input) {
     const place = this.place(input);
     this.run.set(place.at, input.dataset.name, input.value);
-    this.edited();
+    this.edited(input);
   }
 
   key(event) {
