@@ -10,6 +10,7 @@ import chromium
 import pytest
 from test_serve import served
 
+from ltlc.frontend.syntax.lexer import FUNCTIONS, KEYWORDS, QUANTIFIERS
 from ltlc.interfaces.serve.server import Server
 from ltlc.interfaces.serve.start import Start
 
@@ -123,6 +124,39 @@ def test_the_property_under_the_cursor_is_the_one_that_is_told(browser: chromium
     for line, text in ((40, "eventually robot.velocity > 1"), (3, "never robot.velocity > 2")):
         browser.run("document.getElementById('text').setSelectionRange(arguments[0], arguments[0])", line)
         browser.wait_until(f"return document.querySelector('.property').textContent === '{text}'")
+
+
+def tokens(browser: chromium.Browser, kind: str) -> list[str]:
+    found: list[str] = browser.run(
+        "return [...document.querySelectorAll(`.marks .${arguments[0]}`)].map((e) => e.textContent)", kind
+    )
+    return found
+
+
+def test_every_keyword_and_function_of_the_language_has_a_colour(browser: chromium.Browser) -> None:
+    write(browser, "\n".join([*sorted(KEYWORDS), *(f"x < {name}(y)" for name in (*FUNCTIONS, *QUANTIFIERS))]))
+    assert tokens(browser, "keyword") == sorted(KEYWORDS)
+    assert tokens(browser, "function") == [*FUNCTIONS, *QUANTIFIERS]
+    colour = "return getComputedStyle(document.querySelector(arguments[0])).color"
+    kinds = (".marks", ".token.keyword", ".token.function")
+    assert len({browser.run(colour, kind) for kind in kinds}) == len(kinds)
+
+
+def test_words_in_names_strings_and_comments_are_no_keywords(browser: chromium.Browser) -> None:
+    text = (
+        "decl after_x /always/x String.data # never\n"
+        'until_: after new after_x, never after_x == "not # \\"or\\"" and new.until + limit > 2.5 and x1 < 1e-3\n'
+        "in_time: within 500 ms, x > 3 # 7 s\n"
+    )
+    write(browser, text)
+    assert tokens(browser, "keyword") == ["decl", "after", "new", "never", "and", "and", "within"]
+    assert tokens(browser, "string") == ['"not # \\"or\\""']
+    assert tokens(browser, "comment") == ["# never", "# 7 s"]
+    assert tokens(browser, "number") == ["2.5", "1e-3", "500 ms", "3"]
+    assert tokens(browser, "label") == ["until_", "in_time"]
+    assert (tokens(browser, "topic"), tokens(browser, "type")) == (["/always/x"], ["String.data"])
+    lines = browser.run("return [...document.querySelector('.marks').children].map((e) => e.textContent)")
+    assert [line.rstrip("\u200b ") for line in lines] == text.split("\n")
 
 
 def test_a_place_beyond_the_basic_plane_is_marked_where_it_is(browser: chromium.Browser) -> None:

@@ -1,10 +1,10 @@
-// The text with marks in it: a text area over a copy of its text, in which the places of findings are underlined.
+// The text with marks in it: a text area over a copy of its text, which has colours, and findings underlined.
 
 import { make } from "./dom.js";
 
 export class Editor {
   constructor(area, marks, changed, moved) {
-    Object.assign(this, { area, marks, findings: [] });
+    Object.assign(this, { area, marks, findings: [], colours: (line) => [[line, null]], drawn: new Map() });
     area.addEventListener("input", () => {
       this.findings = [];
       this.draw();
@@ -67,30 +67,49 @@ export class Editor {
     this.draw();
   }
 
+  // Lines that are as they were are not made again.
   draw() {
     const spans = this.findings.map(({ span, severity }) => [...this.range(span), severity]);
+    const before = this.drawn;
+    this.drawn = new Map();
     let start = 0;
     const lines = this.area.value.split("\n").map((line) => {
-      const drawn = make("div", {}, ...this.pieces(line, start, spans));
+      const here = spans.map(([from, to, severity]) => [from - start, Math.max(to, from + 1) - start, severity])
+        .filter(([from, to]) => from <= line.length && to > 0);
       start += line.length + 1;
-      return drawn;
+      const key = JSON.stringify([line, here]);
+      const element = before.get(key)?.pop() ?? make("div", {}, ...this.pieces(line, here));
+      if (!this.drawn.get(key)?.push(element)) this.drawn.set(key, [element]);
+      return element;
     });
     this.marks.replaceChildren(...lines);
   }
 
   // A line in pieces, each with the weightiest of the findings that are about it.
-  pieces(line, start, spans) {
-    const end = start + line.length;
-    const here = spans.filter(([from, to]) => from <= end && Math.max(to, from + 1) > start);
-    const cuts = [...new Set([start, end, ...here.flatMap(([from, to]) => [from, Math.max(to, from + 1)])])]
-      .filter((cut) => start <= cut && cut <= end).sort((a, b) => a - b);
+  pieces(line, here) {
+    const end = line.length;
+    const cuts = [...new Set([0, end, ...here.flatMap(([from, to]) => [from, to])])]
+      .filter((cut) => 0 <= cut && cut <= end).sort((a, b) => a - b);
     const weigh = (severity) => ["error", "warning", "note"].indexOf(severity);
-    const pieces = cuts.slice(1).map((cut, n) => {
-      const about = here.filter(([from, to]) => from <= cuts[n] && Math.max(to, from + 1) >= cut).map((each) => each[2]);
-      const text = line.slice(cuts[n] - start, cut - start);
-      return about.length ? make("mark", { class: about.sort((a, b) => weigh(a) - weigh(b))[0] }, text) : text;
+    const colours = this.colours(line);
+    const pieces = cuts.slice(1).flatMap((cut, n) => {
+      const about = here.filter(([from, to]) => from <= cuts[n] && to >= cut).map((each) => each[2]);
+      const text = coloured(colours, cuts[n], cut);
+      return about.length ? [make("mark", { class: about.sort((a, b) => weigh(a) - weigh(b))[0] }, ...text)] : text;
     });
     const atEnd = here.filter(([from]) => from === end).map((each) => each[2]);
     return [...pieces, atEnd.length ? make("mark", { class: atEnd[0] }, " ") : "\u200b"];
   }
+}
+
+// The part of a line between two of its places, with colours.
+function coloured(pieces, from, to) {
+  let end = 0;
+  return pieces.flatMap(([piece, kind]) => {
+    const start = end;
+    end += piece.length;
+    const text = piece.slice(Math.max(from - start, 0), Math.max(to - start, 0));
+    if (!text) return [];
+    return [kind ? make("span", { class: `token ${kind}` }, text) : text];
+  });
 }

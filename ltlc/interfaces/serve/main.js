@@ -1,6 +1,7 @@
 // The page: a text and a run, and what is asked about them whenever one of them changes.
 
 import { ask, giveUp, Superseded } from "./ask.js";
+import { colouring } from "./colours.js";
 import { showComparison, tellEncoding } from "./comparison.js";
 import { Curves } from "./curves.js";
 import { $, badge, later, make, VERDICTS, words } from "./dom.js";
@@ -349,6 +350,7 @@ function listen() {
 
 async function begin() {
   start = await (await fetch("start.json")).json();
+  editor.colours = colouring(start.words);
   if (start.name) $("title").textContent = start.name;
   $("version").textContent = `ltlc ${start.version}. Nothing leaves this machine.`;
   $("examples").replaceChildren(make("option", { value: "" }, "Choose…"),

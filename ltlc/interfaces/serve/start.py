@@ -8,6 +8,8 @@ from importlib.resources import files
 from typing import Any
 
 from ltlc import __version__
+from ltlc.frontend.syntax.lexer import CONTEXTUAL, FUNCTIONS, KEYWORDS, QUANTIFIERS
+from ltlc.semantics.durations import UNITS
 from ltlc.semantics.encodings import ENCODINGS
 
 
@@ -26,6 +28,12 @@ class Start:
             "text": self.text,
             "examples": list(_examples()),
             "encodings": list(ENCODINGS),
+            "words": {
+                "keywords": sorted(KEYWORDS),
+                "contextual": sorted(CONTEXTUAL),
+                "functions": [*FUNCTIONS, *QUANTIFIERS],
+                "units": [*UNITS, "Hz"],
+            },
             "version": __version__,
         }
 
