@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import os
 import re
 from html.parser import HTMLParser
 from pathlib import Path
+from urllib.parse import unquote_to_bytes
 
 import pytest
 from test_campaigns import BROKEN, FAST, GOOD, SPECIFICATION, ran
@@ -56,7 +58,7 @@ def test_it_says_where_each_property_fails_with_the_first_violations_side_by_sid
 ) -> None:
     text = [line.strip() for line in page(capsys).text if line.strip()]
     start = text.index("Violated in 6 recordings. The first:")
-    assert text[start - 3 : start] == ["limit", "never speed > 2", "Speed is never more than 2."]
+    assert text[start - 3 : start] == ["limit", "never speed > 2", "speed is never more than 2."]
     assert text[start + 1 : start + 15] == [
         *(f"drives/fast{number}.csv" for number in range(4)),
         "violated at",
@@ -77,13 +79,28 @@ def test_it_says_what_was_never_triggered_in_any_recording(capsys: pytest.Captur
     assert any("line 3: " in line for line in after[after.index("Not judged to the end") :])
 
 
+def test_a_link_leads_from_the_page_to_each_recording_that_fails_or_was_not_judged(
+    drives: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for name in ("javascript:a b#?%41.csv", "\udcff ä.csv"):
+        (drives / name).write_text(FAST)
+    Path("out").mkdir()
+    ran(capsys, "drives", "--summary", "out/s.html")
+    read = Reader(Path("out/s.html").read_text(encoding="utf-8"))
+    links = {value for name, value in read.attributes if name == "href"}
+    assert {"../drives/fast0.csv", "../drives/javascript%3Aa%20b%23%3F%2541.csv"} <= links
+    linked = {(Path("out") / os.fsdecode(unquote_to_bytes(link))).resolve() for link in links}
+    assert linked == set(drives.resolve().iterdir()) - {drives.resolve() / "good.csv"}
+
+
 def test_names_stay_text_and_nothing_is_loaded(drives: Path, capsys: pytest.CaptureFixture[str]) -> None:
     name = "<script src=x onerror=alert(1)>\"'&{{7*7}}\x1b\udcff.csv"
     (drives / name).write_text(FAST)
     (drives / "<b>broken.csv").write_text("time,<i>x\n0,1\nx\n")
     read = page(capsys)
     assert {"script", "img", "link", "iframe", "b", "i"}.isdisjoint(read.tags)
-    assert not [each for each in read.attributes if each[0].startswith("on") or each[0] in ("src", "href")]
+    assert not [each for each in read.attributes if each[0].startswith("on") or each[0] == "src"]
+    assert all(re.fullmatch(r"[\w./%-]+", value) for name, value in read.attributes if name == "href")
     assert any("<script src=x onerror=alert(1)>\"'&{{7*7}}\\x1b\\udcff.csv" in line for line in read.text)
     assert not re.search(r"url\(|https?:|@import", Path("s.html").read_text(encoding="utf-8"))
 

@@ -56,7 +56,9 @@ def run_several(judge: Judge, found: Found, options: argparse.Namespace) -> int:
 
         english = {each.specification.label: English(each.specification).sentence() for each in judge.compiled}
         with saying("drawing the summary", options.quiet):
-            written[options.summary] = summary_page(judge.specification.source.name, tally, found, english)
+            written[options.summary] = summary_page(
+                judge.specification.source.name, tally, found, english, options.summary.parent
+            )
     if page is not None:
         with saying("drawing the page", options.quiet):
             written[options.report] = page.content()

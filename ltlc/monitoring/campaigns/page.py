@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
+from urllib.parse import quote
 
 import jinja2
 
 from ltlc import __version__
 from ltlc.monitoring.campaigns.forms import remarks
-from ltlc.monitoring.campaigns.places import Found
+from ltlc.monitoring.campaigns.places import Found, is_address
 from ltlc.monitoring.campaigns.tally import Failing, PropertyTally, Result, Tally
 from ltlc.runtime.reports import printable, value_text
 from ltlc.runtime.times import SECOND, Scale, seconds_text
@@ -18,10 +21,11 @@ SIDE_BY_SIDE = 4
 """How many violations of a property are shown side by side."""
 
 
-def summary_page(specification: str, tally: Tally, found: Found, english: Mapping[str, str]) -> str:
+def summary_page(specification: str, tally: Tally, found: Found, english: Mapping[str, str], folder: Path) -> str:
     """The page: which properties fail where, first violations side by side, and what was never triggered.
 
-    `english` says in words what each property means, by its label.
+    `english` says in words what each property means, by its label. The page links to recordings of this machine, as
+    seen from the `folder` that it is written to.
     """
     environment = jinja2.Environment(
         loader=jinja2.PackageLoader("ltlc.monitoring.campaigns", "."),
@@ -31,6 +35,7 @@ def summary_page(specification: str, tally: Tally, found: Found, english: Mappin
         undefined=jinja2.StrictUndefined,
     )
     environment.filters["shown"] = printable
+    environment.filters["link"] = lambda name: _link(name, folder)
     properties = list(tally.properties.values())
     return environment.get_template("page.html").render(
         specification=specification,
@@ -43,6 +48,11 @@ def summary_page(specification: str, tally: Tally, found: Found, english: Mappin
         errors=tally.errors,
         english=english,
     )
+
+
+def _link(name: str, folder: Path) -> str:
+    """The relative address of a recording, empty if it is not on this machine."""
+    return "" if is_address(name) else quote(os.fsencode(os.path.relpath(name, folder)))
 
 
 def _row(of_one: PropertyTally) -> dict[str, Any]:
