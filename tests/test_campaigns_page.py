@@ -59,8 +59,10 @@ def test_it_says_where_each_property_fails_with_the_first_violations_side_by_sid
     text = [line.strip() for line in page(capsys).text if line.strip()]
     start = text.index("Violated in 6 recordings. The first:")
     assert text[start - 3 : start] == ["limit", "never speed > 2", "speed is never more than 2."]
-    assert text[start + 1 : start + 15] == [
+    assert text[start + 1 : start + 20] == [
         *(f"drives/fast{number}.csv" for number in range(4)),
+        "recording",
+        *["1 s"] * 4,
         "violated at",
         *["+1 s (step 1)"] * 4,
         "speed",
@@ -77,6 +79,25 @@ def test_it_says_what_was_never_triggered_in_any_recording(capsys: pytest.Captur
     assert "idle:" in after
     assert "stop:" not in after
     assert any("line 3: " in line for line in after[after.index("Not judged to the end") :])
+
+
+DRIVE = "time,speed,distance\n10,1,5\n11,{},5\n13,1,5\n15,{},5\n16,1,5\n20,1,5\n"
+
+
+@pytest.mark.usefixtures("drives")
+def test_a_timeline_marks_where_in_the_recording_the_property_is_violated(capsys: pytest.CaptureFixture[str]) -> None:
+    Path("props.txt").write_text(f"{SPECIFICATION}once_: never (speed > 3 and once speed > 2)\n")
+    Path("a.csv").write_text(DRIVE.format(2.5, 3.5))
+    Path("b.csv").write_text("time,speed,distance\n1,2.5,5\n")
+    Path("c.csv").write_text(DRIVE.format(1, 3))
+    ran(capsys, "a.csv", "b.csv", "c.csv", "--summary", "s.html")
+    written = Path("s.html").read_text(encoding="utf-8")
+    parts = [
+        [tuple(map(float, part)) for part in re.findall(r'class="bad" x="([\d.]+)" width="([\d.]+)"', cell)]
+        for cell in re.findall(r"<svg.*?</svg>", written, re.DOTALL)
+    ]
+    assert parts == [[(20, 40), (100, 20)], [(100, 20)], [(100, 2)]]
+    assert written.count('<span class="soft">10 s</span>') == 3
 
 
 def test_a_link_leads_from_the_page_to_each_recording_that_fails_or_was_not_judged(

@@ -15,10 +15,13 @@ from ltlc.monitoring.campaigns.forms import remarks
 from ltlc.monitoring.campaigns.places import Found, is_address
 from ltlc.monitoring.campaigns.tally import Failing, PropertyTally, Result, Tally
 from ltlc.runtime.reports import printable, value_text
-from ltlc.runtime.times import SECOND, Scale, seconds_text
+from ltlc.runtime.times import SECOND, Scale, seconds_text, span_text
 
 SIDE_BY_SIDE = 4
 """How many violations of a property are shown side by side."""
+
+TIMELINE = 200
+"""How wide a timeline is, in the units of its drawing."""
 
 
 def summary_page(specification: str, tally: Tally, found: Found, english: Mapping[str, str], folder: Path) -> str:
@@ -47,6 +50,7 @@ def summary_page(specification: str, tally: Tally, found: Found, english: Mappin
         idle=[each for each in properties if each.is_idle],
         errors=tally.errors,
         english=english,
+        width=TIMELINE,
     )
 
 
@@ -69,8 +73,26 @@ def _failures(of_one: PropertyTally) -> dict[str, Any]:
         "count": of_one.counts[Result.VIOLATED],
         "places": [(each.recording, _moment(each.found.report["decided_at"])) for each in of_one.failing],
         "first": [each.recording for each in first],
+        "timelines": [_timeline(each) for each in first],
         "lines": _side_by_side(first),
     }
+
+
+def _timeline(failing: Failing) -> dict[str, Any] | None:
+    """What is drawn of a recording: where the property is violated, or only where it first is if no more is known.
+
+    None if the recording has no length.
+    """
+    if failing.beginning is None or failing.end is None or failing.end <= failing.beginning:
+        return None
+    length = failing.end - failing.beginning
+    first = failing.found.report["decided_at"]
+    parts = []
+    for each in failing.found.report.get("violations") or [first]:
+        width = max(TIMELINE * each.get("lasted_ns", 0) / length, 2)
+        start = TIMELINE * (each["time_ns"] - failing.beginning) / length
+        parts.append((round(min(start, TIMELINE - width), 2), round(width, 2)))
+    return {"length": span_text(length), "parts": parts}
 
 
 def _side_by_side(failing: list[Failing]) -> list[tuple[str, list[str]]]:

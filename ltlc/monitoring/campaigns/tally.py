@@ -7,6 +7,7 @@ from enum import Enum
 
 from ltlc.monitoring.campaigns.outcomes import Outcome, PropertyOutcome
 from ltlc.runtime import reports
+from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.verdicts import Verdict
 
 
@@ -41,10 +42,12 @@ def kind_of(found: PropertyOutcome) -> Result:
 
 @dataclass(frozen=True, slots=True)
 class Failing:
-    """A property is violated in `recording`."""
+    """A property is violated in `recording`, which is from `beginning` to `end`, both None if that is not known."""
 
     recording: str
     found: PropertyOutcome
+    beginning: Nanoseconds | None
+    end: Nanoseconds | None
 
 
 @dataclass(slots=True)
@@ -89,7 +92,8 @@ class Tally:
             of_one = self.properties.setdefault(found.label, PropertyTally(found.label, str(found.report["text"])))
             of_one.counts[kind_of(found)] += 1
             if found.verdict is Verdict.VIOLATED and len(of_one.failing) < LISTED:
-                of_one.failing.append(Failing(outcome.place.name, found))
+                times = (outcome.report.get(name) for name in ("beginning_ns", "end_ns"))  # not in an older table
+                of_one.failing.append(Failing(outcome.place.name, found, *times))
 
     @property
     def exit_code(self) -> int:

@@ -94,6 +94,8 @@ class RunReport:
         document: dict[str, Any] = {"recording": self.recording, "steps": 0, "properties": None}
         if self.session is not None:
             document = documents.document(self.recording, self.session)
+            end = self.session.time
+            document |= {"end": None if end is None else seconds(end), "end_ns": end}
             for each, track in zip(document["properties"], self.session.tracks, strict=True):
                 each.update(violations_report(self.session, track))
                 if requirement := self.requirements.get(each["label"]):
