@@ -159,6 +159,17 @@ def test_words_in_names_strings_and_comments_are_no_keywords(browser: chromium.B
     assert [line.rstrip("\u200b ") for line in lines] == text.split("\n")
 
 
+def test_the_coloured_text_wraps_where_the_text_under_the_cursor_wraps(browser: chromium.Browser) -> None:
+    write(browser, "\n\n".join("not " + length * "x" + " " for length in range(100)))
+    script = """
+    const area = document.getElementById('text'), height = document.querySelector('.marks').offsetHeight;
+    Object.assign(area.style, { height: 0, alignSelf: 'start' });
+    return [area.scrollHeight, height];
+    """
+    of_text, of_colours = browser.run(script)
+    assert of_text == of_colours
+
+
 def test_a_place_beyond_the_basic_plane_is_marked_where_it_is(browser: chromium.Browser) -> None:
     write(browser, 'decl m /m String.data\nnever m == "🤖🤖" and robot.velocty > 2\n')
     browser.wait_until("return document.querySelector('mark.error')")
