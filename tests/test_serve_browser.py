@@ -159,6 +159,17 @@ def test_words_in_names_strings_and_comments_are_no_keywords(browser: chromium.B
     assert [line.rstrip("\u200b ") for line in lines] == text.split("\n")
 
 
+def test_the_coloured_text_wraps_where_the_text_under_the_cursor_wraps(browser: chromium.Browser) -> None:
+    write(browser, "\n\n".join("not " + length * "x" + " " for length in range(100)))
+    script = """
+    const area = document.getElementById('text'), height = document.querySelector('.marks').offsetHeight;
+    Object.assign(area.style, { height: 0, alignSelf: 'start' });
+    return [area.scrollHeight, height];
+    """
+    of_text, of_colours = browser.run(script)
+    assert of_text == of_colours
+
+
 def test_a_place_beyond_the_basic_plane_is_marked_where_it_is(browser: chromium.Browser) -> None:
     write(browser, 'decl m /m String.data\nnever m == "🤖🤖" and robot.velocty > 2\n')
     browser.wait_until("return document.querySelector('mark.error')")
@@ -418,6 +429,46 @@ def test_a_run_is_given_more_steps_that_hold_what_was_there(browser: chromium.Br
     )
     assert cells(browser, "time") == ["0", "0.5", "1", "1.5", "2", "2.5", "3", "3.5", "4"]
     assert cells(browser, "robot.velocity") == ["0"] * 4 + ["1.5"] * 2 + ["0"] * 3
+
+
+@pytest.mark.parametrize(
+    ("wave", "wanted"),
+    [
+        ("constant", [1, 1, 1, 1, 1]),
+        ("step", [1, 1, 3, 3, 3]),
+        ("ramp", [1, 1.5, 2, 2.5, 3]),
+        ("sine", [2, 3, 2, 1, 2]),
+    ],
+)
+def test_a_signal_is_filled_with_a_wave_between_two_values(
+    browser: chromium.Browser, wave: str, wanted: list[float]
+) -> None:
+    browser.run(
+        "document.getElementById('wave').value = arguments[0]; document.getElementById('fill-from').value = 1;"
+        "document.getElementById('fill-to').value = 3; document.querySelector('#fill button').click()",
+        wave,
+    )
+    assert [float(cell) for cell in cells(browser, "robot.velocity")] == wanted
+    wait_for_verdict(browser, "presumably satisfied" if max(wanted) <= 2 else "violated")
+    undo(browser)
+    assert cells(browser, "robot.velocity") == ["0"] * 5
+
+
+def test_a_step_whose_time_is_no_number_is_not_filled(browser: chromium.Browser) -> None:
+    browser.run("document.querySelector('[aria-label=\"time, step 4\"]').select()")
+    press(browser, *"soon")
+    browser.run("document.getElementById('wave').value = 'ramp'; document.querySelector('#fill button').click()")
+    assert [float(cell) for cell in cells(browser, "robot.velocity")] == [0, 0.333333, 0.666667, 1, 0]
+
+
+def test_what_is_no_number_and_no_boolean_is_not_offered_to_be_filled(browser: chromium.Browser) -> None:
+    write(browser, 'decl m /m String.data\ndecl on /on Bool.data\nalways (m == "a" or on)\n')
+    browser.wait_until("return document.querySelector('#table input[data-name=on]')")
+    assert browser.run("return [...document.getElementById('fill-signal').options].map((e) => e.value)") == ["on"]
+    browser.run("document.getElementById('wave').value = 'step'; document.querySelector('#fill button').click()")
+    assert cells(browser, "on") == ["false"] * 2 + ["true"] * 3
+    write(browser, 'decl m /m String.data\nalways m == "a"\n')
+    browser.wait_until("return document.getElementById('fill').hidden")
 
 
 def test_the_address_keeps_the_text_and_the_run(browser: chromium.Browser, server: Server) -> None:

@@ -13,8 +13,7 @@ export class Curves {
 
   // Draw all of it anew; `labels` are those of the properties.
   draw(labels) {
-    const drawable = this.run.signals.filter(({ type }) => ["number", "boolean"].includes(type));
-    this.curves = drawable.map((signal) => new Curve(signal, this));
+    this.curves = this.run.drawable.map((signal) => new Curve(signal, this));
     this.bands = labels.map((label) => ({ label, picture: draw("svg", {
       viewBox: `0 0 ${WIDTH} ${BAND}`, preserveAspectRatio: "none", class: "band", role: "img",
     }), words: make("div", { class: "band-words", "aria-hidden": "true" }) }));

@@ -98,7 +98,8 @@ export class Editor {
       return about.length ? [make("mark", { class: about.sort((a, b) => weigh(a) - weigh(b))[0] }, ...text)] : text;
     });
     const atEnd = here.filter(([from]) => from === end).map((each) => each[2]);
-    return [...pieces, atEnd.length ? make("mark", { class: atEnd[0] }, " ") : "\u200b"];
+    if (atEnd.length) return [...pieces, make("mark", { class: atEnd[0] }, " ")];
+    return line ? pieces : ["\u200b"]; // so that an empty line has its height; after a blank it would begin another
   }
 }
 

@@ -10,7 +10,7 @@ import { markHere, showFindings, summary } from "./findings.js";
 import { History } from "./history.js";
 import { keep, kept } from "./link.js";
 import { showCard, showExplanation, showMachine, showMaps, showProperties, showReason } from "./properties.js";
-import { MOST_STEPS, Run } from "./run.js";
+import { MOST_STEPS, Run, WAVES } from "./run.js";
 import { RunTable } from "./table.js";
 
 const run = new Run();
@@ -119,6 +119,7 @@ function reshaped() {
   if (run.rows.length) $("count").value = run.rows.length;
   table.draw(labels());
   curves.draw(labels());
+  offerSignals();
   chose(at);
   keepSoon();
 }
@@ -302,6 +303,20 @@ function even() {
   rowsEdited();
 }
 
+// Offer the signals that can be filled; the one that was chosen stays, if it is still there.
+function offerSignals() {
+  const names = run.drawable.map(({ name }) => name), before = $("fill-signal").value;
+  $("fill").hidden = !names.length;
+  $("fill-signal").replaceChildren(...names.map((name) => make("option", {}, name)));
+  if (names.includes(before)) $("fill-signal").value = before;
+}
+
+function fill() {
+  const signal = run.drawable.find(({ name }) => name === $("fill-signal").value);
+  run.fill(signal, $("wave").value, Number($("fill-from").value), Number($("fill-to").value));
+  rowsEdited();
+}
+
 async function copy(button, text) {
   const said = button.textContent;
   await navigator.clipboard.writeText(text).then(() => { button.textContent = "Copied"; },
@@ -322,6 +337,10 @@ function listen() {
   $("redo").addEventListener("click", () => edits.redo());
   document.addEventListener("keydown", undoKey);
   $("even").addEventListener("click", even);
+  $("fill").addEventListener("submit", (event) => {
+    event.preventDefault();
+    fill();
+  });
   $("copy").addEventListener("click", () => copy($("copy"), run.csv()));
   $("share").addEventListener("click", () => {
     if (keepAll()) copy($("share"), location.href);
@@ -356,6 +375,7 @@ async function begin() {
   $("examples").replaceChildren(make("option", { value: "" }, "Choose…"),
     ...start.examples.map(({ title }, n) => make("option", { value: n }, title)));
   $("encoding").replaceChildren(...start.encodings.map((name) => make("option", { value: name }, name)));
+  $("wave").replaceChildren(...Object.keys(WAVES).map((name) => make("option", {}, name)));
   $("legend").replaceChildren(...VERDICTS.flatMap((verdict) => [badge(verdict, true), ` ${words(verdict)} `]));
   listen();
   if (kept()) open(kept());

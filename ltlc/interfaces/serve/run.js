@@ -16,6 +16,14 @@ export function secondsText(nanoseconds) {
 // `number` without the noise of binary fractions.
 export const tidy = (number) => String(Number(number.toPrecision(12)));
 
+// Where between two values a wave is, from 0 to 1, at each part of the run from 0 to 1.
+export const WAVES = {
+  constant: () => 0,
+  step: (part) => (part < 0.5 ? 0 : 1),
+  ramp: (part) => part,
+  sine: (part) => 0.5 + 0.5 * Math.sin(2 * Math.PI * part),
+};
+
 export class Run {
   constructor() {
     this.rows = [];
@@ -85,6 +93,21 @@ export class Run {
       this.insert(n, tidy(time));
       Object.assign(this.rows[n].cells, cells);
     }
+  }
+
+  // Give a number or boolean signal the values of a wave between two values, once in the whole run.
+  fill({ name, type }, wave, from, to) {
+    const known = this.times.filter(Number.isFinite), start = Math.min(...known), length = Math.max(...known) - start;
+    this.times.forEach((time, at) => {
+      if (!Number.isFinite(time)) return;
+      const value = from + (to - from) * WAVES[wave](length ? (time - start) / length : 0);
+      this.set(at, name, type === "number" ? tidy(Number(value.toPrecision(6))) : String(value > 0.5));
+    });
+  }
+
+  // The signals that can be drawn, and filled.
+  get drawable() {
+    return this.signals.filter(({ type }) => ["number", "boolean"].includes(type));
   }
 
   // Take the steps of an example; those without a time follow one another at the rate of the specification.
