@@ -145,7 +145,7 @@ def test_a_page_fits_the_window_and_nothing_fails(
 @in_a_browser
 def test_the_search_finds_pages(browser: chromium.Browser, address: str) -> None:
     browser.visit(f"{address}/index.html?q=patrolling")
-    browser.wait_until("return document.querySelector('.md-search-result__link[href*=\"missions.html\"]')")
+    browser.wait_until("return document.querySelector('.md-search-result__link[href*=\"patterns.html\"]')")
     assert browser.complaints() == []
 
 
