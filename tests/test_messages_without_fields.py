@@ -144,7 +144,7 @@ def test_the_error_names_what_can_be_asked_and_how_a_value_is_declared() -> None
     [found] = findings("decl cloud /points PointCloud2\nnever cloud > 2\n")
     assert str(found.help).startswith("use `new cloud` or `age(cloud)`; a value is declared with its path, as in ")
     [found] = findings("decl bump /bumper std_msgs/Empty\nnever bump\n")
-    assert str(found.help) == "ask for `new bump` or `age(bump)`"
+    assert str(found.help) == "use `new bump` or `age(bump)`"
 
 
 def test_a_type_that_is_a_value_by_itself_stays_one() -> None:

@@ -118,7 +118,7 @@ def test_an_id_before_a_colon_is_put_into_attributes() -> None:
     text = "REQ-001: never robot.velocity > 2\n"
     [found] = findings(text)
     [fix] = found.fixes
-    assert mended(text, [fix]) == '[id "REQ-001"]\n never robot.velocity > 2\n'
+    assert mended(text, [fix]) == '[id "REQ-001"]\nnever robot.velocity > 2\n'
     assert codes_of(mended(text, [fix])) == []
 
 
