@@ -114,6 +114,15 @@ def test_a_link_leads_from_the_page_to_each_recording_that_fails_or_was_not_judg
     assert linked == set(drives.resolve().iterdir()) - {drives.resolve() / "good.csv"}
 
 
+def test_recordings_of_one_instant_have_a_page_without_timelines(
+    drives: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for each in drives.iterdir():
+        each.unlink()
+    (drives / "fast.csv").write_text("time,speed\n0,3\n")
+    assert "Violated in 1 recording" in " ".join(page(capsys).text)
+
+
 def test_names_stay_text_and_nothing_is_loaded(drives: Path, capsys: pytest.CaptureFixture[str]) -> None:
     name = "<script src=x onerror=alert(1)>\"'&{{7*7}}\x1b\udcff.csv"
     (drives / name).write_text(FAST)
