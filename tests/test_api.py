@@ -103,6 +103,25 @@ def test_a_row_is_taken_as_what_it_has_whether_that_is_usual_or_not() -> None:
             run.step({"robot.velocity": -1.0}, 3.0)
 
 
+@pytest.mark.parametrize(
+    ("first", "second"),
+    [
+        ({"speed": 1.0}, {"battery": 0.0}),
+        ({"speed": 1.0, "other": 0.0}, {"speed": 1.0, "battery": 0.0}),
+        ({"speed": 1.0, "other": 0.0}, {"battery": 0.0, "time": 0.5}),
+        ({"speed": 1.0, "time": 0.0}, {"speed": 1.0, "battery": 0.0}),
+    ],
+)
+def test_a_row_with_as_many_but_other_names_is_read_by_its_own(
+    first: dict[str, float], second: dict[str, float]
+) -> None:
+    run = ltlc.monitor(SLOW + "\ndecl battery /battery Float64.data\nfull: never battery < 0.1")
+    for row, time in ((first, 0.0), (second, 0.5)):
+        run.step(row, None if "time" in row else time)
+    [found] = run.violations
+    assert (found.label, found.decided and found.decided.time) == ("full", 500_000_000)
+
+
 def test_a_deadline_that_passes_between_two_steps_is_told_at_its_time() -> None:
     run = ltlc.monitor(SOON)
     run.step({"speed": 3}, Decimal("1700000000.1"))

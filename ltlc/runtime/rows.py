@@ -199,7 +199,12 @@ class ByRows:
         if route.names:
             session.steps += 1
         known = session.sampler.known
-        route.update.take(known, time, values)
+        update = route.update
+        # As `update.take` does: calling it would be much of what a message costs.
+        for place, target in update.plain:
+            known[target] = values[place]
+        if update.deep or update.derived:
+            update.take_more(known, time, values)
         if route.stepped:
             self._judge(time, known, route.stepped, changes, route.topics)
         if route.aged:
@@ -371,7 +376,8 @@ class ByRows:
         Messages have come on `topics`; to a property that still waits they are lost.
         """
         for track, window in stepped:
-            values = window.values(known)
+            place = window.place
+            values = (known[place],) if place >= 0 else window.values(known)
             if track.steps or None not in values or track.property.is_ready(values):
                 previous = track.step(time, values)
                 if previous is not None:  # as at the first step

@@ -169,10 +169,11 @@ class Window:
 
     Those are samples of `signals`; of `topics` it wants to know the news only. All of
     it comes from the topics `read`. Of the `values` of what is known one that is
-    missing is None; what has a value once, keeps one.
+    missing is None; what has a value once, keeps one. If there is only one input, its
+    value stands at `place`, which is -1 otherwise.
     """
 
-    __slots__ = ("inputs", "read", "signals", "topics", "values")
+    __slots__ = ("inputs", "place", "read", "signals", "topics", "values")
 
     def __init__(self, inputs: Iterable[Wanted], sampler: Sampler) -> None:
         self.inputs = tuple(inputs)
@@ -183,7 +184,9 @@ class Window:
         )
         of_signals = (sampler.topics[name] for name in self.signals)
         self.read = self.topics.union(*of_signals)
-        self.values = _taker([sampler.place(wanted) for wanted in self.inputs])
+        places = [sampler.place(wanted) for wanted in self.inputs]
+        self.place = places[0] if len(places) == 1 else -1
+        self.values = _taker(places)
 
 
 def _taker(places: Sequence[int]) -> Callable[[list[Value]], Sequence[Value]]:
@@ -218,11 +221,9 @@ class Update:
         for place, target in self.plain:
             known[target] = values[place]
         if self.deep or self.derived:
-            self._take_deep(known, time, values)
+            self.take_more(known, time, values)
 
-    def _take_deep(
-        self, known: list[Value], time: int, values: Sequence[Value]
-    ) -> None:
+    def take_more(self, known: list[Value], time: int, values: Sequence[Value]) -> None:
         """Add those that are computed, or of which more than the latest is kept."""
         for place, samples in self.deep:
             samples.add(known, time, values[place])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from math import floor
 from pathlib import Path
 
 from ltlc.inputs.recordings.blocks import Block, blocks_of
@@ -46,14 +47,14 @@ class GivenTable:
 
 def time_given(path: Path, number: int, previous: Nanoseconds | None, seconds: object) -> Nanoseconds:
     """The time of row `number`, which follows that at `previous`, exactly as it is written. Raises RecordingError."""
-    if seconds is None:
-        raise failure("LTL804", path, f"row {number}: there is no `{TIME}`")
     # What `repr` writes, if it is whole nanoseconds below 10^6 s, is found without that text:
     # no two such times, which have 15 digits, are the same double.
-    if isinstance(seconds, float) and -1e6 < seconds < 1e6:
-        time = round(seconds * 1e9)
-        if time / 1e9 == seconds and (previous is None or 0 <= time - previous <= LONGEST_GAP):
+    if seconds.__class__ is float and -1e6 < seconds < 1e6:
+        time = floor(seconds * 1e9 + 0.5)
+        if time / 1e9 == seconds and (previous is None or previous <= time <= previous + LONGEST_GAP):
             return time
+    if seconds is None:
+        raise failure("LTL804", path, f"row {number}: there is no `{TIME}`")
     return time_of_row(path, f"row {number}", previous, str(seconds))
 
 

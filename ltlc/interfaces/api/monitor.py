@@ -23,7 +23,7 @@ from ltlc.runtime.properties import Change
 from ltlc.runtime.rows import ByRows, Route
 from ltlc.runtime.sampling import Value
 from ltlc.runtime.session import Session
-from ltlc.runtime.times import Times, seconds_text
+from ltlc.runtime.times import SECOND, Times, seconds_text
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.verdicts import Verdict
 from ltlc.specification.expressions import Signal
@@ -112,7 +112,18 @@ class LiveRun:
         try:
             # Written out, as this is most of what a row costs beside its properties.
             reader = self._reader
-            if reader is None or values.__class__ is not dict or tuple(values) != reader.keys:
+            if reader is None or values.__class__ is not dict or len(values) != reader.size:
+                reader = self._reader_of(values)
+            route, taken = reader.route, []
+            for name in reader.doubles:
+                value = values.get(name)
+                if value.__class__ is not float:
+                    route = None
+                taken.append(value)
+            for name in reader.others:
+                if name not in values:
+                    route = None
+            if route is None:
                 reader = self._reader_of(values)
             written: object = time
             if reader.has_time or time_ns is not None:
@@ -120,13 +131,7 @@ class LiveRun:
             if (written is None) is not self._is_counted:
                 self._is_counted = self._is_by_number(written is None)
             number = self._rows + 1
-            moment = time_given(NAME, number, self._time, self._rows if self._is_counted else written)
-            route, taken = reader.route, []
-            for name in reader.doubles:
-                value = values[name]
-                if value.__class__ is not float:
-                    route = None
-                taken.append(value)
+            moment = self._rows * SECOND if self._is_counted else time_given(NAME, number, self._time, written)
             if route is None:
                 route, taken = self._read(moment, values, reader.table)
         except BaseException as error:
@@ -212,8 +217,9 @@ class LiveRun:
         are_doubles = found.is_plain and all(column == DOUBLE for column in found.cells.values())
         is_simple = are_doubles and not any(name in found.cells for name in self._checks.unsigned)
         doubles = tuple(found.cells) if is_simple else ()
+        others = tuple(key for key in keys if key not in doubles)
         route = self._by_rows.route(doubles) if is_simple else None
-        self._readers[keys] = _Reader(keys, found, TIME in keys, doubles, route)
+        self._readers[keys] = _Reader(len(keys), found, TIME in keys, doubles, others, route)
         return self._readers[keys]
 
     def _begin(self, columns: Collection[str]) -> ByRows:
@@ -227,15 +233,16 @@ class LiveRun:
 
 @dataclass(frozen=True, slots=True)
 class _Reader:
-    """Reads rows with the same `keys`, which `table` has as columns; they may have the time among them.
+    """Reads rows with the same keys, so many, which `table` has as columns; they may have the time among them.
 
-    If all that is read of them are doubles, as in most rows, `route` is where these lead to.
+    If all that is read of them are `doubles`, as in most rows, `route` is where these lead to; `others` are not read.
     """
 
-    keys: tuple[str, ...]
+    size: int
     table: FromTable
     has_time: bool
     doubles: tuple[str, ...]
+    others: tuple[str, ...]
     route: Route | None
 
 
