@@ -65,6 +65,8 @@ MESSAGE = record({"text": TEXT}, {"markdown": TEXT})
 POSITION = at_least(1)
 REGION = record({"startLine": POSITION}, dict.fromkeys(("startColumn", "endLine", "endColumn"), POSITION))
 ARTIFACT = record({"uri": TEXT})
+BAG = kind(dict)
+"""A property bag: anything by name."""
 PHYSICAL = record({"artifactLocation": ARTIFACT}, {"region": REGION})
 LOCATION = record({"physicalLocation": PHYSICAL}, {"id": at_least(0), "message": MESSAGE})
 RULE = record(
@@ -88,12 +90,18 @@ RESULT = record(
         "locations": many(LOCATION),
         "relatedLocations": many(LOCATION),
         "fixes": many(FIX),
+        "properties": BAG,
     },
 )
-DRIVER = record({"name": TEXT}, {"version": TEXT, "rules": many(RULE)})
+DRIVER = record({"name": TEXT}, {"version": TEXT, "rules": many(RULE), "properties": BAG})
+READ = record({}, {"location": ARTIFACT, "hashes": record({}, {"sha-256": TEXT})})
 RUN = record(
     {"tool": record({"driver": DRIVER})},
-    {"columnKind": one_of("unicodeCodePoints", "utf16CodeUnits"), "results": many(RESULT)},
+    {
+        "columnKind": one_of("unicodeCodePoints", "utf16CodeUnits"),
+        "artifacts": many(READ),
+        "results": many(RESULT),
+    },
 )
 LOG = record({"version": one_of("2.1.0"), "runs": many(RUN)}, {"$schema": TEXT})
 

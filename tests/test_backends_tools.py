@@ -111,6 +111,7 @@ def test_the_json_document_tells_settings_property_and_alphabet() -> None:
     )
     document = json.loads(json_target.emit(compiled, found))
     [described] = document.pop("properties")
+    assert document.pop("provenance")["specifications"] == [{"name": "a.txt", "sha256": found.source.sha256}]
     assert document == {"schema": "ltlc-monitors-1", "source": "a.txt", "rate": 5.0, "timeout": None}
     assert (described["label"], described["line"], described["encoding"]) == ("fast", 3, "episode")
     assert described["alphabet"] == [{"atoms": ["x > 2", "x < 1"], "valuations": [["x < 1"], [], ["x > 2"]]}]

@@ -18,6 +18,8 @@ NAUGHTY = "\"\"\" + exit(7) # {0} %s '''"
 
 PROPERTIES = """
 decl x /x std_msgs/Float64.data
+## It stays low.
+[id "REQ-1", verifies "SYS-4" "H-7"]
 low: never x > 5
 reached: eventually x == 3
 """
@@ -80,7 +82,7 @@ def test_a_violation_ends_the_run_where_that_was_asked_for(script: Path, send: S
         send(6.0)
         assert node.exit_code() == 1
     assert node.runs[0]["low"]["decided_at"]["values"] == {"x": 6.0}
-    assert "Error at line 3 of watch.txt (low):" in node.log
+    assert "Error at line 5 of watch.txt (low):" in node.log
 
 
 def test_a_full_disk_is_reported_and_changes_no_verdict(script: Path, send: Send, tmp_path: Path) -> None:
@@ -166,6 +168,20 @@ def messages(network: Network, name: str, topic: str) -> int | None:
         return None
     values = {pair.key: pair.value for pair in network.statuses[name].values}
     return int(values[f"messages on {topic}"])
+
+
+def test_a_diagnosis_has_the_requirement(script: Path, network: Network, send: Send, tmp_path: Path) -> None:
+    with Node(script, tmp_path) as node:
+        send(1.0)
+        network.wait_until(lambda: {"watch_monitor: low", "watch_monitor: reached"} <= {*network.statuses}, "diagnoses")
+        node.end()
+    low, reached = (network.statuses[f"watch_monitor: {label}"].values for label in ("low", "reached"))
+    found = {pair.key: pair.value for pair in low if pair.key.startswith("requirement")}
+    assert found == {"requirement": "It stays low.", "requirement id": "REQ-1", "requirement verifies": "SYS-4, H-7"}
+    assert not [pair for pair in reached if pair.key.startswith("requirement")]
+    (case, other) = ElementTree.parse(node.junit).getroot().findall("testcase")
+    assert [each.get("value") for each in case.findall("properties/property")][1:] == ["REQ-1", "SYS-4", "H-7"]
+    assert other.find("properties") is None
 
 
 def test_without_clock_the_report_says_so(script: Path, network: Network, tmp_path: Path) -> None:

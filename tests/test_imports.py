@@ -40,6 +40,7 @@ ORDER = {
         "monitoring.columns",
         "monitoring.judging",
         "monitoring.campaigns",
+        "monitoring.matrix",
         "monitoring.mining",
         "monitoring.measuring",
     ],

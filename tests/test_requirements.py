@@ -4,19 +4,32 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
 
 import pytest
+import sarif_schema
 from language_support import codes_of, compiled, findings, marked
+from read_mutants import read_back
 from stepping import from_text
 from test_editor import offered, said
 
+from ltlc.assurance.reading.outcomes import Difference, ReadBack
+from ltlc.backends import emit
 from ltlc.base.mends import mended
 from ltlc.base.source import Source
 from ltlc.cli import main
 from ltlc.frontend.layout import layout
 from ltlc.interfaces.api.check import check
 from ltlc.interfaces.api.monitor import monitor
+from ltlc.interfaces.api.run import run as api_run
+from ltlc.monitoring.campaigns.forms import JUnit
+from ltlc.monitoring.campaigns.outcomes import of_report
+from ltlc.monitoring.campaigns.places import Found, Location
+from ltlc.monitoring.campaigns.tally import Tally
 from ltlc.monitoring.judging.run import run
+from ltlc.runtime.documents import json_line
+from ltlc.semantics.certificate_reader import parse
 
 SPEED = "decl v /odom Odometry.twist.twist.linear.x\n"
 NAV = """
@@ -28,7 +41,7 @@ stops: always (v > 1 implies eventually v < 0.1)
 # a remark
 never v > 2
 """
-DOCUMENT = {
+DOCUMENT: dict[str, Any] = {
     "id": "REQ-NAV-012",
     "text": "The robot stops for people (ISO 13482, 5.10).",
     "attributes": {
@@ -67,6 +80,73 @@ def test_check_and_run_tell_it(tmp_path: Path) -> None:
     [stops, slow] = json.loads(run(*from_text(SPEED + NAV), tmp_path / "a.csv", False).json())["properties"]
     assert stops["requirement"] == DOCUMENT
     assert "requirement" not in slow
+
+
+def test_a_test_case_of_junit_has_it_as_properties(tmp_path: Path) -> None:
+    (tmp_path / "a.csv").write_text("time,v\n5,1\n7.5,0\n9,3\n")
+    suite = ElementTree.fromstring(run(*from_text(SPEED + NAV), tmp_path / "a.csv", False).junit())
+    stops, slow = suite.findall("testcase")
+    assert (stops.get("file"), stops.get("line"), stops.get("time")) == ("props.txt", "7", "4")
+    assert [(each.get("name"), each.get("value")) for each in stops.findall("properties/property")] == [
+        ("requirement", DOCUMENT["text"]),
+        *((key, value) for key, values in DOCUMENT["attributes"].items() for value in values),
+    ]
+    assert slow.find("properties") is None
+
+
+def test_a_campaign_tells_it_as_a_single_run_does(tmp_path: Path) -> None:
+    (tmp_path / "a.csv").write_text("time,v\n5,1\n7.5,0\n9,3\n")
+    (tmp_path / "b.csv").write_text("time,v\n5,1\n7.5,3\n9,3\n")
+    form = JUnit()
+    for name in ("a.csv", "b.csv"):
+        report = run(*from_text(SPEED + NAV), tmp_path / name, False)
+        form.add(of_report(Location(str(tmp_path / name)), report, 0.0))
+        single = ElementTree.fromstring(report.junit())
+        several = ElementTree.fromstring(form.end(Tally(), Found([])))[-1]
+        assert ElementTree.tostring(single).split() == ElementTree.tostring(several).split()
+
+
+def test_a_change_of_verdict_as_a_line_tells_it() -> None:
+    live = monitor(SPEED + NAV)
+    told = [json.loads(json_line(change)) for change in live.step({"v": 3.0})]
+    assert [each.get("requirement") for each in told] == [DOCUMENT, None]
+
+
+def test_a_finding_in_sarif_tells_that_of_its_property(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    stated = '## Never.\n[id "A"]\nnever v > 2 and v < 1\nnever v > 3 and v < 1\n'
+    (tmp_path / "a.ltlc").write_text(SPEED + stated)
+    main(["check", str(tmp_path / "a.ltlc"), "--format", "sarif"])
+    log = json.loads(capsys.readouterr().out)
+    assert not sarif_schema.problems(log)
+    found = [each for each in log["runs"][0]["results"] if each["ruleId"] == "LTL503"]
+    assert [each.get("properties", {}).get("requirement", {}).get("id") for each in found] == ["A", None]
+
+
+def test_a_page_tells_it(tmp_path: Path) -> None:
+    (tmp_path / "a.csv").write_text("time,v\n0,1\n")
+    html = api_run(SPEED + NAV, tmp_path / "a.csv").page()
+    assert html.count('<dl class="stated">') == 1
+    for value in (DOCUMENT["text"], "REQ-NAV-012", "SYS-4", "H-7", "critical"):
+        assert f"<dd>{value}</dd>" in html
+
+
+def test_a_certificate_tells_it_and_is_the_same_without(tmp_path: Path) -> None:
+    (tmp_path / "a.ltlc").write_text(SPEED + NAV)
+    certificate, bare = (tmp_path / name for name in ("a.cert", "b.cert"))
+    code = str(tmp_path / "a.py")
+    assert main(["build", str(tmp_path / "a.ltlc"), "-o", code, "--certificate", str(certificate)]) == 0
+    text = certificate.read_text()
+    assert "# id: REQ-NAV-012\n# verifies: SYS-4\n# verifies: H-7\n" in text
+    bare.write_text("".join(line for line in text.splitlines(keepends=True) if not line.startswith("#")))
+    assert parse(text) == parse(bare.read_text())
+
+
+def test_an_emitted_node_has_it_and_is_read_back(tmp_path: Path) -> None:
+    compiled, specification = from_text(SPEED + NAV)
+    code = emit("ros2", compiled, specification)
+    assert "REQ-NAV-012" in code
+    assert all(isinstance(each, ReadBack) for each in read_back(code, compiled))
+    assert isinstance(read_back(code.replace("REQ-NAV-012", "REQ-NAV-013"), compiled)[0], Difference)
 
 
 def test_a_live_run_tells_it() -> None:

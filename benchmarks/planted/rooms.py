@@ -11,7 +11,7 @@ LOOSE = "loose modules"
 ROOMS = {
     LOOSE: "test_commands_*.py test_mends.py test_language_check.py test_pytest_plugin.py test_render.py test_api.py",
     "base": "test_commands_*.py test_mends.py test_language_check.py test_pytest_plugin.py test_render.py test_api.py "
-    "test_libraries.py test_release.py",
+    "test_libraries.py test_release.py test_provenance.py",
     "analysis": "test_analysis_*.py",
     "interfaces/api": "test_api*.py test_commands_compare.py test_comparison_corpus.py test_comparison_pictures.py",
     "assurance": "test_assurance_*.py test_semantics_certificate.py test_each_code.py test_each_message_code.py",
@@ -35,6 +35,7 @@ ROOMS = {
     "frontend/layout": "test_layout.py test_commands_format.py",
     "base/limits": "test_limits.py",
     "inputs/messages": "test_messages_definitions.py test_language_signals.py",
+    "monitoring/matrix": "test_matrix.py",
     "monitoring/measuring": "test_commands_new.py",
     "monitoring/mining": "test_mining.py",
     "interfaces/pages": "test_pages_*.py test_campaigns_page.py test_api_display.py",
@@ -44,7 +45,8 @@ ROOMS = {
     "runtime": "test_runtime_*.py test_recordings.py test_openings.py test_each*.py test_explained.py",
     "semantics": "test_semantics_*.py test_diagrams.py test_runtime_episodes.py test_openings.py",
     "interfaces/serve": "test_serve.py test_serve_browser.py",
-    "specification": "test_specification_*.py test_language_signals.py test_language_margins.py test_assurance_gate.py",
+    "specification": "test_specification_*.py test_requirements.py test_language_signals.py test_language_margins.py "
+    "test_assurance_gate.py",
     "frontend/starter": "test_commands_new.py",
     "frontend/syntax": "test_syntax_parse.py test_language_files.py test_language_check.py test_language_readings.py",
 }

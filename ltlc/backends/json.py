@@ -5,6 +5,7 @@ source        the name of the specification
 rate, timeout of the specification, in Hz and s, or null
 properties    in the order of the specification, each with
   label, line, text
+  requirement the requirement that it states, if there is one: its `id`, `text` and `attributes`
   encoding    the name of the encoding of scopes
   formula     core LTL in Spot's syntax; `X[!]` is the strong next
   atoms       conditions, in the order in which decisions ask them
@@ -12,6 +13,7 @@ properties    in the order of the specification, each with
   states      the verdict of each state; state 0 is the initial one, its verdict that of the empty run
   edges       for each state, where a step from it leads: a state, or, if negative, decision `-1 - n`
   decisions   [atom, low, high]: which atom is asked, and where it leads if it does not hold and if it does
+provenance    version and commit of ltlc, and the SHA-256 of the specification
 """
 
 from __future__ import annotations
@@ -20,6 +22,7 @@ import json
 from collections.abc import Sequence
 from typing import Any
 
+from ltlc.base.provenance import provenance
 from ltlc.compiler import Compiled
 from ltlc.runtime.times import seconds
 from ltlc.semantics.alphabet import Group
@@ -37,6 +40,7 @@ def emit(compiled: Sequence[Compiled], specification: Specification) -> str:
         "rate": specification.rate,
         "timeout": None if specification.timeout is None else seconds(specification.timeout),
         "properties": [_property(c) for c in compiled],
+        "provenance": provenance([specification.source]),
     }
     return json.dumps(document, indent=2, allow_nan=False) + "\n"
 
@@ -47,6 +51,7 @@ def _property(compiled: Compiled) -> dict[str, Any]:
         "label": property_.label,
         "line": property_.line,
         "text": property_.text,
+        **({"requirement": property_.requirement.document()} if property_.requirement else {}),
         "encoding": compiled.encoding.name,
         "formula": to_text(compiled.formula),
         "atoms": list(monitor.atoms),

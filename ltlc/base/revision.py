@@ -14,9 +14,14 @@ _PACKAGE = Path(__file__).parents[1]
 
 def version_text() -> str:
     """`1.0.0 (1f3a5c7e9b2d)`, with `, modified` where files differ from the commit; without one that is not known."""
-    packaged = _PACKAGE / FILE
-    commit = packaged.read_text(encoding="utf-8") if packaged.exists() else commit_of(_PACKAGE.parent)
+    commit = commit_text()
     return f"{__version__} ({commit})" if commit else __version__
+
+
+def commit_text() -> str:
+    """`1f3a5c7e9b2d`, with `, modified` where files differ from the commit; empty if it is not known."""
+    packaged = _PACKAGE / FILE
+    return packaged.read_text(encoding="utf-8") if packaged.exists() else commit_of(_PACKAGE.parent)
 
 
 def commit_of(checkout: Path) -> str:

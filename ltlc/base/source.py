@@ -5,6 +5,8 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
+from hashlib import sha256
 
 
 @dataclass(frozen=True, slots=True, order=True)
@@ -29,16 +31,25 @@ class Span:
 
 @dataclass(frozen=True)
 class Source:
-    """A named text, usually a file; `name` is what a diagnostic calls it."""
+    """A named text, usually a file; `name` is what a diagnostic calls it.
+
+    In the file a `mark` stands before the text: a byte order mark, or nothing.
+    """
 
     name: str
     text: str
+    mark: bytes = b""
     _line_starts: list[int] = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         starts = [0]
         starts.extend(i + 1 for i, character in enumerate(self.text) if character == "\n")
         object.__setattr__(self, "_line_starts", starts)
+
+    @cached_property
+    def sha256(self) -> str:
+        """The SHA-256 of the file, in hexadecimal digits, as `sha256sum` prints it."""
+        return sha256(self.mark + self.text.encode(errors="surrogatepass")).hexdigest()
 
     def position(self, offset: int) -> Position:
         """The line and column of the character at `offset`; the end of the text is a place too."""

@@ -38,6 +38,7 @@ def property_report(session: Session, track: Track) -> dict[str, Any]:
         "open_since": _optional(track.open_since, zero),
         "invalid_steps": track.invalid,
         "never_triggered": track.never_triggered,
+        **track.property.traced(),
     }
     if track.verdicts is not None:
         report["verdicts"] = [verdict.value for verdict in track.verdicts]
@@ -136,6 +137,7 @@ def json_line(change: Change) -> str:
         "line": change.property.line,
         "previous": change.previous.value,
         "verdict": change.current.value,
+        **change.property.traced(),
         **moment_report(change.moment, None),
     }
     return json.dumps(data)

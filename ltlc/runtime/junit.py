@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 from html import escape
+from typing import Any
 
+from ltlc.runtime.properties import stated
 from ltlc.runtime.reports import figure, printable, sentence, unseen
 from ltlc.runtime.session import Session
 from ltlc.runtime.silence import lost, malformed
+from ltlc.runtime.times import seconds_text
 from ltlc.runtime.tracking import Track
 from ltlc.semantics.verdicts import Verdict
 
@@ -18,17 +21,22 @@ def junit(
     session: Session,
     more: Sequence[Case] = (),
     remarks: Sequence[str] = (),
+    properties: Iterable[Pair] = (),
 ) -> str:
     """A JUnit XML report: a test suite `name` with one test case for each property.
 
-    After these come `more`, and then `remarks` on all of it.
+    After these come `more`, and then `remarks` on all of it; `properties` are of all.
 
     What is violated or still owed at the end fails; what never started is an error, and
     so is what would hold if no message had been lost.
     """
     cases = [*(_case(session, track) for track in session.tracks), *more]
-    return f"{XML_HEAD}{suite_text(name, cases, [*unseen(session), *remarks])}"
+    told = [*unseen(session), *remarks]
+    return f"{XML_HEAD}{suite_text(name, cases, told, properties)}"
 
+
+Pair = tuple[str, str]
+"""The name of a property of a suite or a case, and its value."""
 
 XML_HEAD = '<?xml version="1.0" encoding="UTF-8"?>\n'
 
@@ -37,7 +45,9 @@ XML_HEAD = '<?xml version="1.0" encoding="UTF-8"?>\n'
 class Case:
     """A test case: what there is to say about it in a line, and if it failed in full.
 
-    `element` is what a case has that did not pass: `failure`, `error`, or None.
+    `element` is what a case has that did not pass: `failure`, `error`, or None. It
+    stands at a `line` of a `file`, states a `requirement` (an object of JSON), and was
+    judged for `time` ns of the run, None if that is not known.
     """
 
     name: str
@@ -45,9 +55,18 @@ class Case:
     kind: str
     message: str
     details: str
+    file: str = ""
+    line: int = 0
+    time: int | None = None
+    requirement: Mapping[str, Any] = field(default_factory=dict)
 
 
-def suite_text(name: str, cases: Sequence[Case], remarks: Sequence[str]) -> str:
+def suite_text(
+    name: str,
+    cases: Sequence[Case],
+    remarks: Sequence[str],
+    properties: Iterable[Pair] = (),
+) -> str:
     """A JUnit test suite as an element of XML."""
     elements = [case.element for case in cases]
     failures, errors = elements.count("failure"), elements.count("error")
@@ -56,19 +75,35 @@ def suite_text(name: str, cases: Sequence[Case], remarks: Sequence[str]) -> str:
     return (
         f'<testsuite name={_attribute(name)} tests="{len(cases)}" '
         f'failures="{failures}" errors="{errors}">\n'
+        f"{_properties_text(properties, '  ')}"
         f"{''.join(_case_text(name, case) for case in cases)}{output}</testsuite>\n"
     )
 
 
 def _case_text(suite: str, case: Case) -> str:
     head = f"classname={_attribute(suite)} name={_attribute(case.name)}"
+    if case.file:
+        head += f' file={_attribute(case.file)} line="{case.line}"'
+    if case.time is not None:
+        head += f' time="{seconds_text(case.time)}"'
     message = escape(printable(case.message), quote=False)
     body = f"<system-out>{message}</system-out>"
     if case.element is not None:
         kind = f'message={_attribute(case.message)} type="{case.kind}"'
         details = escape(case.details, quote=False)
         body = f"<{case.element} {kind}>{details}</{case.element}>"
+    if properties := _properties_text(stated(case.requirement), "    "):
+        body = f"\n{properties}    {body}\n  "
     return f"  <testcase {head}>{body}</testcase>\n"
+
+
+def _properties_text(properties: Iterable[Pair], indent: str) -> str:
+    """The properties as an element of XML; nothing if there are none."""
+    told = "".join(
+        f"{indent}  <property name={_attribute(name)} value={_attribute(value)}/>\n"
+        for name, value in properties
+    )
+    return f"{indent}<properties>\n{told}{indent}</properties>\n" if told else ""
 
 
 _FAILURES = (Verdict.VIOLATED, Verdict.PRESUMABLY_VIOLATED)
@@ -79,8 +114,19 @@ def _case(session: Session, track: Track) -> Case:
     is_violated = track.verdict is Verdict.VIOLATED
     details = figure(session, track) if is_violated else f"{printable(message)}\n"
     element = case_element(track.verdict, has_lost=_misses(session, track))
-    name = track.property.label
-    return Case(name, element, track.verdict.value, message, details)
+    of, zero, decided = track.property, session.beginning, track.decided_at
+    end = session.time if decided is None else decided.time
+    return Case(
+        of.label,
+        element,
+        track.verdict.value,
+        message,
+        details,
+        of.file,
+        of.line,
+        None if zero is None or end is None else end - zero,
+        of.requirement,
+    )
 
 
 def _misses(session: Session, track: Track) -> bool:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
 from operator import attrgetter
@@ -185,7 +185,8 @@ class MonitoredProperty:
     gives for the values that are read, and about `clocks`; all are empty where nothing
     violates the property. Of conditions about arrays, `elements` says what decides
     them; `constants` are names of values of inputs. With a `slicing` it is judged for
-    each id, and all of this is said of one slice.
+    each id, and all of this is said of one slice. The `requirement` that it states is
+    an object of JSON: its `id`, `text` and `attributes`; without any it is empty.
 
     It `waits` for those of its inputs that are not excused; news always has a value.
     `dues` of a monitor are when each of its clocks is due; with `counts_bounds`, some
@@ -216,6 +217,7 @@ class MonitoredProperty:
     elements: tuple[Elements, ...] = ()
     constants: Constants = field(default_factory=dict)
     slicing: SlicedBy | None = None
+    requirement: Mapping[str, Any] = field(default_factory=dict)
 
     waits: tuple[bool, ...] = field(init=False, repr=False, compare=False)
     dues: Callable[[Monitor], tuple[int, ...]] = field(
@@ -235,6 +237,10 @@ class MonitoredProperty:
         }
         for name, value in derived.items():
             object.__setattr__(self, name, value)
+
+    def traced(self) -> dict[str, Any]:
+        """What a JSON object about the property has about its requirement."""
+        return {"requirement": self.requirement} if self.requirement else {}
 
     def is_ready(self, values: Sequence[Value]) -> bool:
         """Whether all that the property waits for has a value, if not all has."""
@@ -258,6 +264,14 @@ class MonitoredProperty:
             if is_missing and all(values[n] for n in each.news):
                 return self.inputs[each.place]
         return None
+
+
+def stated(requirement: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    """A requirement as pairs: its text, as `requirement`, and values of attributes."""
+    if requirement.get("text"):
+        yield "requirement", requirement["text"]
+    for key, values in requirement.get("attributes", {}).items():
+        yield from ((key, value) for value in values)
 
 
 def _with(excused: Iterable[Excused], values: Sequence[Value]) -> Sequence[Value]:

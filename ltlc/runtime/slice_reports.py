@@ -243,6 +243,7 @@ class ToldSlices:
             "verdict": Verdict.VIOLATED.value,
             **moment_report(violation.failure, self.session.beginning),
             "may_lack_beginning": violation.lacks_beginning,
+            **of.traced(),
         }
 
 

@@ -10,7 +10,7 @@ the lines; `proofs/checker` reads the same.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from ltlc.semantics import ltl, properties
 from ltlc.semantics.certificate import Certificate, Place, Progress, all_members
@@ -44,7 +44,7 @@ BEGUN = "begun"
 class Entry:
     """The certificate of one property of a specification; `line` is where the property stands in it.
 
-    `program` is what runs, and how it follows the monitor, if that is there, too.
+    `program` is what runs, and how it follows the monitor, if that is there, too. `remarks` are for people only.
     """
 
     label: str
@@ -53,6 +53,7 @@ class Entry:
     encoding: str
     certificate: Certificate
     program: Followed | None = None
+    remarks: tuple[str, ...] = field(default=(), compare=False)
 
 
 def to_text(entries: Iterable[Entry]) -> str:
@@ -123,6 +124,7 @@ class _Writer:
             if not is_name(name):
                 raise ValueError(f"not a name that fits on a line: {name!r}")
         yield f"property {entry.label}"
+        yield from (f"# {_shortened(remark)}" for remark in entry.remarks)
         yield f"line {entry.line}"
         yield f"encoding {entry.encoding}"
         yield from (f"a{number} {name}" for name, number in self.atoms.items())

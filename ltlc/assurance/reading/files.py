@@ -248,6 +248,8 @@ def _of_property(file: PythonFile, node: ast.expr, machine: Machine, specificati
         right["from_session"] = True
     if machine.excused:
         right["excused"] = tuple(_excused_data(machine, each) for each in machine.excused)
+    if specification.requirement:
+        right["requirement"] = specification.requirement.document()
     ages, kept = found.pop("ages", ()), found.pop("kept", ())
     if found != right or tuple(map(_last, kept)) != of.kept:
         raise NotUnderstoodError(f"the property `{machine.label}` does not receive what it reads")
@@ -255,7 +257,7 @@ def _of_property(file: PythonFile, node: ast.expr, machine: Machine, specificati
     return Written(machine, file, name, machine.inputs, dict(map(_age, ages)))
 
 
-_SAID = ("label", "line", "text", "inputs", "timed", "from_session", "excused", "ages", "kept")
+_SAID = ("label", "line", "text", "inputs", "timed", "from_session", "excused", "ages", "kept", "requirement")
 """What `plan` says of a property and its machine or class does, too."""
 
 

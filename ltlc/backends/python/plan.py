@@ -57,6 +57,7 @@ from ltlc.specification.expressions import (
     operands,
     value_type,
 )
+from ltlc.specification.requirements import Requirement
 from ltlc.specification.specification import (
     Instances,
     Path,
@@ -151,6 +152,8 @@ def _property(plan: _Plan, compiled: Compiled) -> Group:
         arguments.append(tuple_of(map(literal, owed), "obligations=("))
     if Verdict.VIOLATED in compiled.monitor.verdicts:
         arguments += _reasons(plan, compiled)
+    if specification.requirement:
+        arguments.append(_requirement(specification.requirement))
     match specification.slicing:
         case Slicing() as slicing:
             arguments.append(_slicing(plan, compiled, slicing))
@@ -161,6 +164,19 @@ def _property(plan: _Plan, compiled: Compiled) -> Group:
         case _:
             assert_never(specification.slicing)
     return Group("MonitoredProperty(", tuple(arguments), ")", wide=True)
+
+
+def _requirement(stated: Requirement) -> Group:
+    """The requirement that a property states, as it is in JSON."""
+    attributes = (
+        Group(f"{literal(key)}: [", tuple(map(literal, values)), "]") for key, values in stated.attributes.items()
+    )
+    parts_ = (
+        f'"id": {None if stated.id is None else literal(stated.id)}',
+        f'"text": {literal(stated.text)}',
+        Group('"attributes": {', tuple(attributes), "}"),
+    )
+    return Group("requirement={", parts_, "}")
 
 
 def _slicing(plan: _Plan, compiled: Compiled, slicing: Slicing) -> Group:

@@ -2,28 +2,43 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import PurePath
 from typing import Any
 from urllib.parse import quote
 
-from ltlc import __version__
 from ltlc.base import codes
 from ltlc.base.diagnostics import Diagnostic, Fix, Label
+from ltlc.base.provenance import provenance
 from ltlc.base.source import Source, Span
 
 SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
 """What the schema calls itself."""
 
 
-def document(diagnostics: Sequence[Diagnostic]) -> dict[str, Any]:
-    """A log of one run of ltlc with all `diagnostics`."""
+RequirementOf = Callable[[Diagnostic], Mapping[str, Any]]
+"""The requirement of the property that a diagnostic is about, as an object of JSON; empty if there is none."""
+
+
+def document(
+    diagnostics: Sequence[Diagnostic],
+    sources: Iterable[Source] = (),
+    requirement_of: RequirementOf = lambda diagnostic: {},
+) -> dict[str, Any]:
+    """A log of one run of ltlc on `sources`, with all `diagnostics`."""
     used = sorted({diagnostic.code for diagnostic in diagnostics})
-    driver = {"name": "ltlc", "version": __version__, "rules": [_rule(code) for code in used]}
+    made_of = provenance(sources)
+    driver = {"name": "ltlc", "version": made_of["ltlc"], "rules": [_rule(code) for code in used]}
+    if made_of["commit"]:
+        driver["properties"] = {"commit": made_of["commit"]}
     run = {
         "tool": {"driver": driver},
         "columnKind": "unicodeCodePoints",
-        "results": [_result(diagnostic, used.index(diagnostic.code)) for diagnostic in diagnostics],
+        "artifacts": [
+            {"location": {"uri": _uri(each["name"])}, "hashes": {"sha-256": each["sha256"]}}
+            for each in made_of["specifications"]
+        ],
+        "results": [_result(each, used.index(each.code), requirement_of(each)) for each in diagnostics],
     }
     return {"$schema": SCHEMA, "version": "2.1.0", "runs": [run]}
 
@@ -40,7 +55,7 @@ def _rule(code: str) -> dict[str, Any]:
     }
 
 
-def _result(diagnostic: Diagnostic, rule: int) -> dict[str, Any]:
+def _result(diagnostic: Diagnostic, rule: int, requirement: Mapping[str, Any]) -> dict[str, Any]:
     message = diagnostic.message + (f"\n{diagnostic.help}" if diagnostic.help else "")
     result: dict[str, Any] = {
         "ruleId": diagnostic.code,
@@ -53,6 +68,8 @@ def _result(diagnostic: Diagnostic, rule: int) -> dict[str, Any]:
         result["relatedLocations"] = list(_related(diagnostic))
     if diagnostic.fixes:
         result["fixes"] = [_fix(diagnostic.source, fix) for fix in diagnostic.fixes]
+    if requirement:
+        result["properties"] = {"requirement": requirement}
     return result
 
 

@@ -151,12 +151,13 @@ def _source(path: Path, data: bytes) -> Source | Diagnostic:
         return diagnostic(
             "LTL905", nothing, None, f"{path} is longer than {MAX_BYTES} bytes: it is not a specification"
         )
-    return _decode(path, data.removeprefix(BOM_UTF8))
+    mark = BOM_UTF8 if data.startswith(BOM_UTF8) else b""
+    return _decode(path, data.removeprefix(mark), mark)
 
 
-def _decode(path: Path, data: bytes) -> Source | Diagnostic:
+def _decode(path: Path, data: bytes, mark: bytes) -> Source | Diagnostic:
     try:
-        return Source(str(path), data.decode("utf-8"))
+        return Source(str(path), data.decode("utf-8"), mark)
     except UnicodeDecodeError as error:
         readable = Source(str(path), data[: error.start].decode("utf-8") + "\N{REPLACEMENT CHARACTER}")
         place = Span(len(readable.text) - 1, len(readable.text))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from os import PathLike
 from typing import Any
@@ -11,8 +11,10 @@ from ltlc.analysis.examine import Examined, examine
 from ltlc.analysis.subjects import Subject
 from ltlc.base.diagnostics import Diagnostic, Severity
 from ltlc.base.limits import Budget
+from ltlc.base.provenance import provenance
 from ltlc.base.render import full
 from ltlc.base.render import json as render_json
+from ltlc.base.source import Source, Span
 from ltlc.interfaces.api.prepare import Text, encoding_of, folders, read
 from ltlc.specification.requirements import Requirement
 
@@ -73,16 +75,29 @@ def property_check(subject: Subject, file: str) -> PropertyCheck:
 class Check:
     """What was found: `diagnostics` in the order of the text, and what each of the `properties` can do.
 
-    If the text has errors of form, there are no properties.
+    If the text has errors of form, there are no properties. The `sources` are the specifications that could be read.
     """
 
     diagnostics: tuple[Diagnostic, ...]
     properties: tuple[PropertyCheck, ...]
+    sources: tuple[Source, ...] = ()
 
     @property
     def has_errors(self) -> bool:
         """Whether one of the diagnostics is an error."""
         return any(each.severity is Severity.ERROR for each in self.diagnostics)
+
+    def requirement_of(self, found: Diagnostic) -> Mapping[str, Any]:
+        """The requirement of the property in whose text `found` is, as an object of JSON; empty if there is none."""
+        for each in self.properties:
+            stated, place = each.requirement, found.primary
+            if stated and place and each.file == found.source.name and _is_within(place.span, stated.span):
+                return stated.document()
+        return {}
+
+    def __add__(self, other: Check) -> Check:
+        diagnostics, properties = self.diagnostics + other.diagnostics, self.properties + other.properties
+        return Check(diagnostics, properties, self.sources + other.sources)
 
     def __str__(self) -> str:
         lines = "".join(f"{each}\n" for each in self.properties)
@@ -98,13 +113,22 @@ class Check:
     def document(self) -> dict[str, Any]:
         """What `ltlc check --format json` prints."""
         properties = [each.document() for each in self.properties]
-        return {"properties": properties, "diagnostics": render_json.documents(self.diagnostics)}
+        return {
+            "properties": properties,
+            "diagnostics": render_json.documents(self.diagnostics),
+            "provenance": provenance(self.sources),
+        }
 
 
-def check_of(examined: Examined) -> Check:
-    """What was found about a specification."""
+def _is_within(inner: Span, outer: Span) -> bool:
+    return outer.start <= inner.start and inner.end <= outer.end
+
+
+def check_of(examined: Examined, read: Source | Diagnostic) -> Check:
+    """What was found about a specification, of which so much was `read`."""
     file = examined.specification.source.name if examined.specification else ""
-    return Check(tuple(examined.diagnostics), tuple(property_check(each, file) for each in examined.subjects))
+    properties = tuple(property_check(each, file) for each in examined.subjects)
+    return Check(tuple(examined.diagnostics), properties, () if isinstance(read, Diagnostic) else (read,))
 
 
 def check(
@@ -135,5 +159,5 @@ def check(
     fault is said. `budget` is what all analyses together may use. Nothing is raised for what is wrong with the text or
     the file, which is what is asked for; UnusableInput for an encoding that is not known, and SpotMissing.
     """
-    paths, budget_ = folders(message_paths), budget or Budget(SECONDS)
-    return check_of(examine(read(specification), paths, encoding_of(encoding), budget_, pedantic=pedantic))
+    paths, budget_, source = folders(message_paths), budget or Budget(SECONDS), read(specification)
+    return check_of(examine(source, paths, encoding_of(encoding), budget_, pedantic=pedantic), source)

@@ -19,9 +19,12 @@ from ltlc.analysis.comparison.tables import Block, blocks_of
 from ltlc.base.diagnostics import Diagnostic
 from ltlc.base.errors import UnusableInput
 from ltlc.base.limits import Budget, Exceeded, Watch
+from ltlc.base.provenance import provenance
+from ltlc.base.source import Source
 from ltlc.frontend.language import load_text, read_source
 from ltlc.frontend.language.each import refusals
 from ltlc.frontend.language.suppression import unsuppressed
+from ltlc.inputs.recordings.digests import digests
 from ltlc.interfaces.api.notebook import show_pictures
 from ltlc.interfaces.api.prepare import Text, encoding_of, folders, read
 from ltlc.interfaces.api.tables import Display
@@ -42,12 +45,14 @@ class Table(Display):
     """The result of a comparison: an answer for each property or group of formulas.
 
     `recordings` has what each recording shows of each answer, `diagnostics` what else is to be
-    said about the input.
+    said about the input. It was made of `sources` and of the recordings in `files`.
     """
 
     answers: tuple[Answer, ...]
     recordings: tuple[tuple[Recorded, ...], ...] = ()
     diagnostics: tuple[Diagnostic, ...] = ()
+    sources: tuple[Source, ...] = ()
+    files: tuple[Path, ...] = ()
 
     def __iter__(self) -> Iterator[Answer]:
         return iter(self.answers)
@@ -68,7 +73,8 @@ class Table(Display):
 
     def document(self) -> dict[str, Any]:
         """The result as the JSON document of `ltlc compare --format json`."""
-        return document(self.answers, self.recordings)
+        made_of = provenance(self.sources, (each for path in self.files for each in digests(path)))
+        return {**document(self.answers, self.recordings), "provenance": made_of}
 
     def rows(self) -> list[dict[str, Any]]:
         """A row for each property, pair of encodings and kind of runs."""
@@ -122,7 +128,8 @@ def compare(
         raise UnusableInput(unfit)
     answers = answer(questions_of(loaded, chosen), budget, KINDS[reading], watch)
     shown, remarks = _recordings(recordings, loaded, answers, chosen)
-    return Table(tuple(answers), shown, (*warnings, *unsuppressed(diagnostics), *remarks))
+    told = (*warnings, *unsuppressed(diagnostics), *remarks)
+    return Table(tuple(answers), shown, told, (source,), tuple(map(Path, recordings)))
 
 
 MOST_COMPARED = 1000

@@ -165,7 +165,7 @@ class LiveRun:
                 rows.advance(session.time)
             remarks = self._judge.remarks_on(NAME, self._table(self._heads))
             told = (*self._prepared.diagnostics, *remarks)
-            self._run = Run(RunReport(str(NAME), session, told, requirements=self._judge.requirements))
+            self._run = Run(RunReport(str(NAME), session, told, specification=self._judge.specification.source))
         return self._run
 
     def _read(self, time: Nanoseconds, row: Mapping[str, object], table: FromTable) -> tuple[Route, list[Value]]:

@@ -14,6 +14,8 @@ from ltlc.compiler import Compiled
 from ltlc.frontend.language import types_for
 from ltlc.interfaces.building.targets import Made, Target
 from ltlc.interfaces.building.wording import GATE_MEMORY, GATE_SECONDS, failures, summary
+from ltlc.runtime.properties import stated
+from ltlc.runtime.reports import printable
 from ltlc.semantics.certificate import Certificate
 from ltlc.semantics.certificate_reader import UnreadableError, parse
 from ltlc.semantics.certificate_text import Entry, to_text
@@ -66,7 +68,9 @@ def _entry(compiled: Compiled, certificate: Certificate, with_program: bool) -> 
     property_ = compiled.specification
     program = followed(compiled, certificate.assumption) if with_program else None
     said = without_intervals(property_.property)
-    return Entry(property_.label, property_.line, said, compiled.encoding.name, certificate, program)
+    document = {} if property_.requirement is None else property_.requirement.document()
+    remarks = tuple(f"{name}: {printable(value)}" for name, value in stated(document))
+    return Entry(property_.label, property_.line, said, compiled.encoding.name, certificate, program, remarks)
 
 
 def build(

@@ -82,7 +82,7 @@ def _run(options: argparse.Namespace) -> int:
         except NotMendedError as error:
             code = unusable(str(error))
             continue
-        checked = Check(checked.diagnostics + found.diagnostics, checked.properties + found.properties)
+        checked = checked + found
         mends += done
         code = max(code, _exit_code(found, options.strict))
         if options.format in TEXT:
@@ -105,7 +105,7 @@ def _check(path: Path, options: argparse.Namespace, ids: dict[str, str]) -> tupl
         source, mends = mend(path, source, options)
     budget = Budget(*options.budget)
     examined = examine(source, options, budget, pedantic=options.pedantic, recordings=options.recording)
-    return check_of(_traced(_compared(examined, options), ids)), mends
+    return check_of(_traced(_compared(examined, options), ids), source), mends
 
 
 def _traced(examined: Examined, ids: dict[str, str]) -> Examined:
@@ -186,5 +186,5 @@ def _print_document(checked: Check, form: str) -> None:
     if form == "sarif":
         from ltlc.base.render import sarif
 
-        document = sarif.document(checked.diagnostics)
+        document = sarif.document(checked.diagnostics, checked.sources, checked.requirement_of)
     print(json.dumps(document, ensure_ascii=False, indent=2))

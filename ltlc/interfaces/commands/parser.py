@@ -22,6 +22,7 @@ COMMANDS = {
     "build": "make monitors, judge them, and write a ROS 2 node or another target",
     "run": "judge a recorded run",
     "mine": "find the tightest values for `?` with which recorded runs pass",
+    "matrix": "show which requirement is verified by which property, with which results, and what is not covered",
     "certify": "check certificates made by someone else, trusting neither Spot nor their monitors",
     "compare": "compare encodings of the same sentence, or formulas, and show runs that distinguish them",
     "explain": "explain properties in plain English, with example runs; or show the page of a diagnostic",

@@ -110,6 +110,7 @@ def _run(options: argparse.Namespace) -> int:
         options.verdicts,
         keep_trails,
         remarks=prepared.late,
+        hashed=options.format != "text" or options.results is not None,
     )
     if found is not None:
         from ltlc.interfaces.commands.campaign import run_several

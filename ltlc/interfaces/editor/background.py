@@ -71,7 +71,7 @@ def analysed(
     from ltlc.interfaces.api.check import check_of
 
     os.nice(PATIENCE)
-    found = check_of(examine_loaded(specification, diagnostics, encoding, budget))
+    found = check_of(examine_loaded(specification, diagnostics, encoding, budget), specification.source)
     return Analysed(found.diagnostics, {each.text: _summary(each) for each in found.properties})
 
 

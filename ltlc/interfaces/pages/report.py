@@ -25,6 +25,7 @@ from ltlc.monitoring.judging.run import RunReport
 from ltlc.monitoring.judging.violations import violation_text
 from ltlc.monitoring.later import all_violations
 from ltlc.runtime import reports
+from ltlc.runtime.properties import stated
 from ltlc.runtime.reports import printable
 from ltlc.runtime.session import Session
 from ltlc.runtime.times import seconds_text, span_text
@@ -148,6 +149,7 @@ class PageReport:
             "id": link,
             "text": printable(track.property.text),
             "english": self._english(place),
+            "requirement": [(name, printable(value)) for name, value in stated(track.property.requirement)],
             "timeline": len(self._data.timelines) - 1,
             "described": _described(track, trail, drawn),
             "notes": [*_notes(drawn, run.collected), *_left_out(trail)],

@@ -5,12 +5,14 @@ from __future__ import annotations
 import json
 from typing import Protocol
 
+from ltlc.base.provenance import pairs
 from ltlc.base.render.table import aligned
-from ltlc.monitoring.campaigns.outcomes import Outcome
+from ltlc.monitoring.campaigns.outcomes import Outcome, PropertyOutcome
 from ltlc.monitoring.campaigns.places import Found
 from ltlc.monitoring.campaigns.tally import Result, Tally, brief, counted
 from ltlc.monitoring.judging.run import unread_case, warnings
 from ltlc.runtime import junit, reports
+from ltlc.semantics.durations import Nanoseconds
 
 
 class Form(Protocol):
@@ -99,13 +101,18 @@ class JUnit:
                 kind=each.verdict.value,
                 message=each.sentence,
                 details=each.figure or f"{each.sentence}\n",
+                file=each.report["file"],
+                line=each.report["line"],
+                time=_judged_for(outcome, each),
+                requirement=each.report.get("requirement", {}),
             )
             for each in outcome.properties
         ]
         if outcome.error is not None:
             cases.append(unread_case(str(outcome.error["code"]), str(outcome.error["message"])))
         remarks = [*outcome.remarks, *warnings(outcome.report["diagnostics"])]
-        self._suites.append(junit.suite_text(outcome.place.name, cases, remarks))
+        made_of = pairs(outcome.report.get("provenance", {}))
+        self._suites.append(junit.suite_text(outcome.place.name, cases, remarks, made_of))
         return ""
 
     def end(self, tally: Tally, found: Found) -> str:
@@ -114,6 +121,14 @@ class JUnit:
             case = unread_case(problem.code, problem.message)
             self._suites.append(junit.suite_text(problem.source.name, [case], ()))
         return f"{junit.XML_HEAD}<testsuites>\n{''.join(self._suites)}</testsuites>\n"
+
+
+def _judged_for(outcome: Outcome, found: PropertyOutcome) -> Nanoseconds | None:
+    """How long a property was judged, in the time of the recording; None if that is not known."""
+    decided = found.report["decided_at"]
+    beginning, end = (outcome.report.get(name) for name in ("beginning_ns", "end_ns"))  # not in an older table
+    end = end if decided is None else decided["time_ns"]
+    return None if beginning is None or end is None else int(end - beginning)
 
 
 FORMS: dict[str, type[Form]] = {"text": Text, "json": Json, "junit": JUnit}

@@ -55,7 +55,7 @@ class Results:
         self._judged_with = judged_with
         _refuse_without_pyarrow(path)
         with self._writing():
-            self._journal = Journal(path.with_name(f"{path.name}.journal"))
+            self._journal = Journal(_journal_of(path))
         try:
             self._saved = self._standing({place.name: place for place in places})
             self._arrived: list[Row] = []
@@ -72,14 +72,7 @@ class Results:
 
     def kept(self) -> Iterator[Outcome]:
         """What is in the table."""
-        rows = chain.from_iterable(batch.to_pylist() for batch in self._saved.to_batches(max_chunksize=1000))
-        for recording, of_one in groupby(rows, key=lambda row: str(row["recording"])):
-            try:
-                outcome = outcome_of(list(of_one))
-                rows_of(outcome)  # which needs of it what others need
-            except (LookupError, TypeError, ValueError, AttributeError, RecursionError):
-                raise self._damaged(f"its entry for `{recording}` cannot be read") from None
-            yield outcome
+        return _outcomes(self._path, self._saved)
 
     def add(self, outcome: Outcome) -> None:
         """Keep what has arrived. Raises ResultsError."""
@@ -109,11 +102,7 @@ class Results:
         try:
             return self._still_so(self._read(), _journaled(self._journal), places)
         except (UnicodeDecodeError, MemoryError) as error:
-            raise self._damaged(str(error)) from None
-
-    def _damaged(self, what: str) -> ResultsError:
-        help = "remove it, or give another name: then everything is judged"
-        return ResultsError(self._path, f"`{self._path}` is damaged: {what}", help)
+            raise _damaged(self._path, str(error)) from None
 
     def _still_so(self, saved: Table, later: Table, places: Mapping[str, Location]) -> Table:
         """The rows of the table, and those that came `later`, that are still so of `places`."""
@@ -139,19 +128,8 @@ class Results:
 
     def _read(self) -> Table:
         """The table as it was written last, empty if there is none of this version. Raises ResultsError."""
-        if not self._path.exists():
-            return _table(())
-        import pyarrow.parquet
-
-        try:
-            table = pyarrow.parquet.ParquetFile(self._path).read()
-        except (OSError, pyarrow.ArrowException) as error:
-            message = f"`{self._path}` exists and is not a table of results: {error}"
-            raise ResultsError(self._path, message, "give another name; the file was not changed") from None
-        if _MARK not in (table.schema.metadata or {}):
-            message = f"`{self._path}` exists and is not a table of results of ltlc"
-            raise ResultsError(self._path, message, "give another name; the file was not changed")
-        return table if table.schema.equals(_table(()).schema) else _table(())
+        table = _table_at(self._path) if self._path.exists() else _table(())
+        return table if _is_of_this_version(table) else _table(())
 
     def _save(self) -> None:
         """Write the table as it is now. Raises ResultsError."""
@@ -181,6 +159,64 @@ class Results:
         except OSError as error:
             message = f"`{self._path}` cannot be written: {error.strerror or error}"
             raise ResultsError(self._path, message) from None
+
+
+def is_unfinished(path: Path) -> bool:
+    """Whether a campaign is writing the table at `path`, or was interrupted."""
+    return _journal_of(path).exists()
+
+
+def _journal_of(path: Path) -> Path:
+    return path.with_name(f"{path.name}.journal")
+
+
+def outcomes_at(path: Path) -> Iterator[Outcome]:
+    """What campaigns have kept in the table at `path`, which stays as it is. Raises ResultsError."""
+    _refuse_without_pyarrow(path)
+    if not path.is_file():
+        raise ResultsError(path, f"there is no table of results `{path}`", "`ltlc run … --results` writes one")
+    table = _table_at(path)
+    if not _is_of_this_version(table):
+        message = f"`{path}` was written by another version of ltlc, which kept other columns"
+        raise ResultsError(path, message, "judge the recordings again: `ltlc run … --results`")
+    yield from _outcomes(path, table)
+
+
+def _table_at(path: Path) -> Table:
+    """The table at `path`, by whatever version of ltlc. Raises ResultsError."""
+    import pyarrow.parquet
+
+    try:
+        table = pyarrow.parquet.ParquetFile(path).read()
+    except (OSError, pyarrow.ArrowException) as error:
+        message = f"`{path}` exists and is not a table of results: {error}"
+        raise ResultsError(path, message, "give another name; the file was not changed") from None
+    if _MARK not in (table.schema.metadata or {}):
+        message = f"`{path}` exists and is not a table of results of ltlc"
+        raise ResultsError(path, message, "give another name; the file was not changed")
+    return table
+
+
+def _is_of_this_version(table: Table) -> bool:
+    is_so: bool = table.schema.equals(_table(()).schema)
+    return is_so
+
+
+def _outcomes(path: Path, table: Table) -> Iterator[Outcome]:
+    """What the rows of a table say. Raises ResultsError."""
+    rows = chain.from_iterable(batch.to_pylist() for batch in table.to_batches(max_chunksize=1000))
+    for recording, of_one in groupby(rows, key=lambda row: str(row["recording"])):
+        try:
+            outcome = outcome_of(list(of_one))
+            rows_of(outcome)  # which needs of it what others need
+        except (LookupError, TypeError, ValueError, AttributeError, RecursionError):
+            raise _damaged(path, f"its entry for `{recording}` cannot be read") from None
+        yield outcome
+
+
+def _damaged(path: Path, what: str) -> ResultsError:
+    help = "remove it, or give another name: then everything is judged"
+    return ResultsError(path, f"`{path}` is damaged: {what}", help)
 
 
 def digest(parts: Iterable[str]) -> str:

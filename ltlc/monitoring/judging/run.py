@@ -13,9 +13,12 @@ from typing import Any
 from ltlc.backends.python.load import load_plan
 from ltlc.base.codes import diagnostic
 from ltlc.base.diagnostics import Diagnostic, Severity
+from ltlc.base.provenance import pairs, provenance
+from ltlc.base.source import Source
 from ltlc.compiler import Compiled
 from ltlc.inputs.recordings import Block, Recording, RecordingError, open_recording
 from ltlc.inputs.recordings.checks import checks_of
+from ltlc.inputs.recordings.digests import digests
 from ltlc.inputs.recordings.lacks import remarks, signals_of
 from ltlc.inputs.recordings.reading import DEFAULT, Limit, ReadOptions
 from ltlc.inputs.recordings.rows import failure
@@ -34,7 +37,6 @@ from ltlc.runtime.tracking import Observer, Track
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.verdicts import Verdict
 from ltlc.specification.expressions import Field, Signal
-from ltlc.specification.requirements import Requirement
 from ltlc.specification.specification import PropertySpecification, Specification
 
 Watcher = Callable[[Block], None]
@@ -47,8 +49,8 @@ class RunReport:
 
     If it `is_damaged`, it was judged up to the damage; the last of the diagnostics says what that is. There are
     `trails`, one for each property, if they were asked for. `reading` and `judging` took so long. `definitions` say by
-    topic who defines its messages. `blocks` judged the session, if anything could be read. `requirements` are by the
-    labels of the properties that state one.
+    topic who defines its messages. `blocks` judged the session, if anything could be read. The `specification` is what
+    was judged by. The recording is what is in the `file`, if it is in one; its SHA-256 is taken for a document.
     """
 
     recording: str
@@ -60,7 +62,8 @@ class RunReport:
     judging: Nanoseconds = 0
     definitions: Mapping[str, str] = field(default_factory=dict)
     blocks: ByBlocks | None = None
-    requirements: Mapping[str, Requirement] = field(default_factory=dict)
+    specification: Source | None = None
+    file: Path | None = None
 
     @property
     def exit_code(self) -> int:
@@ -98,12 +101,15 @@ class RunReport:
             document |= {"end": None if end is None else seconds(end), "end_ns": end}
             for each, track in zip(document["properties"], self.session.tracks, strict=True):
                 each.update(violations_report(self.session, track))
-                if requirement := self.requirements.get(each["label"]):
-                    each["requirement"] = requirement.document()
         document["is_damaged"] = self.is_damaged
         document["definitions"] = dict(self.definitions)
         document["diagnostics"] = self._diagnostics()
+        document["provenance"] = self.provenance()
         return document
+
+    def provenance(self) -> dict[str, Any]:
+        """What the run was judged with, and on: the object `provenance` of the JSON document."""
+        return provenance(filter(None, [self.specification]), () if self.file is None else digests(self.file))
 
     def _diagnostics(self) -> list[dict[str, str]]:
         return [
@@ -115,9 +121,10 @@ class RunReport:
         """A JUnit XML report; what kept the recording from being judged whole is an error in it."""
         told = self.diagnostics[-1:] if self.session is None or self.is_damaged else ()
         unread = [unread_case(each.code, each.message) for each in told]
+        made_of = list(pairs(self.provenance()))
         if self.session is None:
-            return f"{junit.XML_HEAD}{junit.suite_text(self.recording, unread, ())}"
-        return junit.junit(self.recording, self.session, unread, warnings(self._diagnostics()))
+            return f"{junit.XML_HEAD}{junit.suite_text(self.recording, unread, (), made_of)}"
+        return junit.junit(self.recording, self.session, unread, warnings(self._diagnostics()), made_of)
 
 
 def warnings(diagnostics: Sequence[Mapping[str, str]]) -> list[str]:
@@ -172,6 +179,7 @@ class Judge:
     With `keep_verdicts` a report has the verdict after each step, with `keep_trails` what each property went through.
     Rows are taken from the time `reading.since` on, up to and including `reading.until`. `remarks` are on the monitors,
     and stand in each report before those on the recording. It `finds_all` violations of a property, or the first one.
+    The documents of its reports have the SHA-256 of the recording if it is `hashed`, which takes a moment.
     """
 
     compiled: Sequence[Compiled]
@@ -182,13 +190,14 @@ class Judge:
     open: Open = open_recording
     remarks: tuple[Diagnostic, ...] = ()
     finds_all: bool = True
+    hashed: bool = True
 
     def judge(self, path: Path, watchers: Sequence[Watcher] = ()) -> RunReport:
         """What the recording at `path` shows. `watchers` are told what was judged, block by block."""
         try:
             recording = self.open(path, self.signals, self.reading)
         except RecordingError as error:
-            return RunReport(str(path), None, (error.diagnostic,))
+            return RunReport(str(path), None, (error.diagnostic,), **self._made_of(path))
         found = self.remarks_on(path, recording)
         plan, observe = self.plan(recording.columns), Trailing if self.keep_trails else None
         session = Session(plan, self.keep_verdicts, observe, self._track)
@@ -216,13 +225,13 @@ class Judge:
             *times,
             recording.definitions,
             judged,
-            self.requirements,
+            **self._made_of(path),
         )
 
-    @property
-    def requirements(self) -> dict[str, Requirement]:
-        """The requirements that properties state, by their labels."""
-        return {p.label: p.requirement for p in self.specification.properties if p.requirement}
+    def _made_of(self, path: Path) -> dict[str, Any]:
+        """What a report says of what it was made of; what is opened in another way is in no file."""
+        file = path if self.hashed and self.open is open_recording else None
+        return {"specification": self.specification.source, "file": file}
 
     @cached_property
     def signals(self) -> dict[str, Signal]:

@@ -8,7 +8,9 @@ from pathlib import Path
 from textwrap import indent
 from typing import Any
 
+from ltlc.base.provenance import provenance
 from ltlc.frontend.language.parameters import Role
+from ltlc.inputs.recordings.digests import digests
 from ltlc.monitoring.judging.violations import spread
 from ltlc.monitoring.mining.mine import Failure, Finding, Mined, Result
 from ltlc.monitoring.mining.template import Trial
@@ -100,6 +102,7 @@ def _name(path: Path) -> str:
 
 def document(mined: Mined) -> str:
     """The JSON document of `ltlc mine`: exact values, and beside each that was found the rounded one."""
+    files = (each for path in mined.recordings for each in digests(path))
     found = {
         "specification": mined.template.source.name,
         "recordings": [str(path) for path in mined.recordings],
@@ -110,6 +113,7 @@ def document(mined: Mined) -> str:
             {"code": d.code, "name": d.name, "severity": d.severity.value, "message": d.message, "help": d.help}
             for d in mined.diagnostics
         ],
+        "provenance": provenance([mined.template.source], files),
     }
     return json.dumps(found, indent=2, allow_nan=False) + "\n"
 

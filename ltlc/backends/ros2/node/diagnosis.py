@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from rclpy.node import Node
@@ -81,6 +81,7 @@ class Diagnosis:
             values=[
                 KeyValue(key="verdict", value=track.verdict.value),
                 KeyValue(key="property", value=printable(track.property.text)),
+                *_requirement(track),
                 KeyValue(key="steps", value=str(track.steps)),
                 KeyValue(key="episodes", value=str(track.episodes or 0)),
                 KeyValue(key="invalid steps", value=str(track.invalid)),
@@ -88,6 +89,18 @@ class Diagnosis:
                 *(_messages(session, one) for one in heard),
             ],
         )
+
+
+def _requirement(track: Track) -> Iterable[KeyValue]:
+    """The requirement that a property states: its text and its attributes."""
+    stated = track.property.requirement
+    if not stated:
+        return
+    if stated["text"]:
+        yield KeyValue(key="requirement", value=printable(stated["text"]))
+    for key, values in stated["attributes"].items():
+        value = printable(", ".join(values))
+        yield KeyValue(key=f"requirement {key}", value=value)
 
 
 def _messages(session: Session, listener: Listener) -> KeyValue:

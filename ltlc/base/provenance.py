@@ -1,0 +1,58 @@
+"""What a document was made of: version and commit of ltlc, and SHA-256 of the specification and the recording.
+
+Everything in it is determined by its inputs: there is no date, and no path but the names that the user gave.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import asdict, dataclass
+from functools import cache
+from hashlib import file_digest
+from pathlib import Path
+from typing import Any
+
+from ltlc import __version__
+from ltlc.base.revision import commit_text
+from ltlc.base.source import Source
+
+
+@dataclass(frozen=True, slots=True)
+class FileDigest:
+    """A file by its name, its size in bytes, and its SHA-256 in hexadecimal digits."""
+
+    name: str
+    bytes: int
+    sha256: str
+
+
+def digest_of(path: Path) -> FileDigest:
+    """The file at `path`. Raises OSError."""
+    with path.open("rb") as file:
+        found = file_digest(file, "sha256").hexdigest()
+        return FileDigest(path.name, file.tell(), found)
+
+
+def provenance(specifications: Iterable[Source], recordings: Iterable[FileDigest] = ()) -> dict[str, Any]:
+    """The object `provenance` of a JSON document; `commit` is null where it is not known."""
+    return {
+        "ltlc": __version__,
+        "commit": _commit() or None,
+        "specifications": [{"name": each.name, "sha256": each.sha256} for each in specifications],
+        "recordings": [asdict(each) for each in recordings],
+    }
+
+
+def pairs(made_of: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    """The object `provenance` as names and values, for forms that have nothing deeper; of an empty one nothing."""
+    if made_of:
+        yield "ltlc", made_of["ltlc"]
+        if made_of["commit"]:
+            yield "commit", made_of["commit"]
+        for kind in ("specification", "recording"):
+            yield from ((kind, f"{each['name']} sha256:{each['sha256']}") for each in made_of[f"{kind}s"])
+
+
+@cache
+def _commit() -> str:
+    return commit_text()

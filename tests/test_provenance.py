@@ -1,0 +1,137 @@
+"""What documents were made of: version, commit, and SHA-256 of specification and recording, as sha256sum has it."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from hashlib import sha256
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+from bag_support import odometry, rosbag2
+
+from ltlc import __version__
+from ltlc.base.revision import commit_text
+from ltlc.cli import main
+from ltlc.interfaces.api.monitor import monitor
+
+TEXT = b"\xef\xbb\xbfdecl v /v Float64.data\r\nslow: never v > 2\n"
+"""With a byte order mark and line ends that a reader could drop, which the SHA-256 must not."""
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "props.txt").write_bytes(TEXT)
+    (tmp_path / "a.csv").write_text("time,v\n0,1\n1,2\n")
+    (tmp_path / "b.csv").write_text("time,v\n0,1\n1,3\n")
+    return tmp_path
+
+
+def made_of(folder: Path, *recordings: str) -> dict[str, object]:
+    """What a document made of the specification and the `recordings` has to say."""
+    files = [folder / name for name in recordings]
+    return {
+        "ltlc": __version__,
+        "commit": commit_text() or None,
+        "specifications": [{"name": "props.txt", "sha256": sha256(TEXT).hexdigest()}],
+        "recordings": [
+            {"name": file.name, "bytes": len(file.read_bytes()), "sha256": sha256(file.read_bytes()).hexdigest()}
+            for file in files
+        ],
+    }
+
+
+Document = Callable[..., dict[str, dict[str, object]]]
+
+
+@pytest.fixture
+def document(capsys: pytest.CaptureFixture[str]) -> Document:
+    def printed(*arguments: str) -> dict[str, dict[str, object]]:
+        main([*arguments, "--format", "json"])
+        found: dict[str, dict[str, object]] = json.loads(capsys.readouterr().out)
+        return found
+
+    return printed
+
+
+@pytest.mark.parametrize(
+    ("arguments", "recordings"),
+    [
+        (("check", "props.txt"), ()),
+        (("run", "props.txt", "a.csv"), ("a.csv",)),
+        (("compare", "props.txt", "--recording", "b.csv"), ("b.csv",)),
+    ],
+)
+def test_a_document_says_what_it_was_made_of(
+    folder: Path, document: Document, arguments: tuple[str, ...], recordings: tuple[str, ...]
+) -> None:
+    assert document(*arguments)["provenance"] == made_of(folder, *recordings)
+
+
+def test_mined_values_say_what_they_were_found_in(folder: Path, document: Document) -> None:
+    (folder / "mine.txt").write_bytes(TEXT.replace(b"2", b"?"))
+    found = document("mine", "mine.txt", "a.csv", "b.csv")["provenance"]
+    assert found["recordings"] == made_of(folder, "a.csv", "b.csv")["recordings"]
+    assert found["specifications"] == [
+        {"name": "mine.txt", "sha256": sha256((folder / "mine.txt").read_bytes()).hexdigest()}
+    ]
+
+
+def test_a_campaign_says_it_of_each_recording(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    main(["run", "props.txt", "a.csv", "b.csv", "--format", "json"])
+    first, second = json.loads(capsys.readouterr().out)["recordings"]
+    assert first["provenance"] == made_of(folder, "a.csv")
+    assert second["provenance"] == made_of(folder, "b.csv")
+
+
+def test_a_campaign_keeps_it_in_the_table(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    pytest.importorskip("pyarrow")
+    import pyarrow.parquet
+
+    main(["run", "props.txt", "a.csv", "--results", "results.parquet"])
+    capsys.readouterr()
+    [row] = pyarrow.parquet.read_table("results.parquet").to_pylist()
+    assert json.loads(row["recording_report"])["provenance"] == made_of(folder, "a.csv")
+
+
+@pytest.mark.parametrize("arguments", [("a.csv",), ("a.csv", "a.csv", "--jobs", "1")])
+def test_junit_says_it_as_properties_of_a_suite(
+    folder: Path, capsys: pytest.CaptureFixture[str], arguments: tuple[str, ...]
+) -> None:
+    main(["run", "props.txt", *arguments, "--format", "junit"])
+    root = ElementTree.fromstring(capsys.readouterr().out)
+    suite = root if root.tag == "testsuite" else root[0]
+    assert [(each.get("name"), each.get("value")) for each in suite.findall("properties/property")] == [
+        ("ltlc", __version__),
+        *([("commit", commit_text())] if commit_text() else []),
+        ("specification", f"props.txt sha256:{sha256(TEXT).hexdigest()}"),
+        ("recording", f"a.csv sha256:{sha256((folder / 'a.csv').read_bytes()).hexdigest()}"),
+    ]
+
+
+def test_sarif_says_it_in_its_own_terms(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    main(["check", "props.txt", "--format", "sarif"])
+    [run] = json.loads(capsys.readouterr().out)["runs"]
+    assert run["artifacts"] == [{"location": {"uri": "props.txt"}, "hashes": {"sha-256": sha256(TEXT).hexdigest()}}]
+    assert run["tool"]["driver"].get("properties", {}).get("commit", "") == commit_text()
+
+
+def test_of_a_bag_the_files_with_messages_are_named(folder: Path, document: Document) -> None:
+    rosbag2(folder / "bag", [odometry(0), odometry(1)])
+    names = [each.name for each in sorted((folder / "bag").iterdir()) if each.name != "metadata.yaml"]
+    found = document("run", "props.txt", "bag")["provenance"]["recordings"]
+    assert found == made_of(folder, *(f"bag/{name}" for name in names))["recordings"]
+    assert found
+
+
+def test_what_is_in_no_file_has_no_digest(folder: Path) -> None:
+    live = monitor("decl v /v Float64.data\nnever v > 2\n")
+    live.step({"v": 1.0})
+    (folder / "rows").write_text("not what was judged")
+    assert live.finish().document()["provenance"]["recordings"] == []
+
+
+def test_a_document_is_the_same_twice(folder: Path, document: Document) -> None:
+    assert document("run", "props.txt", "a.csv") == document("run", "props.txt", "a.csv")
