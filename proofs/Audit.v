@@ -2,7 +2,7 @@
 Require Import Ltl Properties Anew Past Relativise Encodings Agreement Clocks Registers Stutter Instants Trackers Resets
   ClockSteps Times OneClock
   Lasso Monitor Conditions Judgements Moves Machines Distribute Certificate Infinite InTime Thresholds
-  Program Follows Followed Shown Counts Intervals.
+  Program Follows Followed Shown Counts Intervals Held Evidence.
 
 Print Assumptions holds_sat.
 Print Assumptions progress_holds.
@@ -64,6 +64,9 @@ Print Assumptions interval_means_not.
 Print Assumptions open_for.
 Print Assumptions opened.
 Print Assumptions episode_opened.
+Print Assumptions past_part_right.
+Print Assumptions clock_part_right.
+Print Assumptions next_part_right.
 
 (* Below: infinite words, excluded middle. *)
 Print Assumptions encode_correct_infinite.
@@ -77,3 +80,5 @@ Print Assumptions certified_exactly_untimed.
 Print Assumptions shown.
 Print Assumptions shown_untimed.
 Print Assumptions shown_exactly_untimed.
+Print Assumptions evidence_of_lines.
+Print Assumptions evidence_untimed.

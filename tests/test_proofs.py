@@ -18,6 +18,8 @@ from cases import TABLE
 from control_mutants import control_mutants
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from judged_cases import TABLE as JUDGED_TABLE
+from judged_cases import Case, answer, cases, drawn, evidence, random_claim
 from strategies import alphabets, properties
 from test_semantics_certificate_text import SPEEDING, STOP_SIGN, TEXT, entry, mangled
 from test_semantics_certificate_time import TEXT as TIMED
@@ -80,6 +82,15 @@ def exact_over_words(certificate: Certificate) -> bool:
     return all(holds(certificate.assumption, (letter,)) for letter in letters) and all(
         is_open(place, words) for some, words in places for place in some
     )
+
+
+def judged(certify: Path, folder: Path, certificates: str, document: str) -> tuple[int, list[str]]:
+    """What the judge from Coq says of evidence."""
+    (folder / "certificates").write_text(certificates, encoding="utf-8")
+    (folder / "evidence").write_text(document, encoding="utf-8")
+    said = run(certify.with_name("judge"), str(folder / "certificates"), str(folder / "evidence"))
+    assert not said.stderr, said.stderr
+    return said.returncode, said.stdout.splitlines()
 
 
 def python_said(each: Entry) -> str:
@@ -373,3 +384,77 @@ def test_both_checkers_refuse_what_is_wrong_about_time(certify: Path, tmp_path: 
     code, lines = python_answer(text)
     assert coq_answer(certify, tmp_path / "one", text) == (code, lines)
     assert code != 0
+
+
+def certificates_of(some: Sequence[Case]) -> str:
+    return to_text({case.entry.label: case.entry for case in some}.values())
+
+
+def test_the_table_of_judged_cases_is_what_the_extracted_judge_says(certify: Path, tmp_path: Path) -> None:
+    some = [*cases()]
+    certificates = certificates_of(some)
+    document = evidence((case.claim for case in some), certificates)
+    table = JUDGED_TABLE.read_text(encoding="utf-8").splitlines()
+    assert judged(certify, tmp_path, certificates, document) == (1, table)
+
+
+def test_both_judges_say_the_same_of_claims_that_are_not_in_the_table(certify: Path, tmp_path: Path) -> None:
+    some = [*cases(range(500, 540), 20)]
+    certificates = certificates_of(some)
+    document = evidence((case.claim for case in some), certificates)
+    assert judged(certify, tmp_path, certificates, document) == (1, [*map(answer, some)])
+    right = [case for case in some if answer(case).endswith("as claimed")]
+    assert len(right) > 20
+    document = evidence((case.claim for case in right), certificates)
+    assert judged(certify, tmp_path, certificates, document) == (0, [*map(answer, right)])
+
+
+def is_certified(each: Entry) -> bool:
+    return not python_said(each).startswith("not certified")
+
+
+def test_both_judges_say_the_same_by_changed_certificates(certify: Path, tmp_path: Path) -> None:
+    answers: Counter[bool] = Counter()
+    for seed in range(600, 640):
+        chance = random.Random(seed)
+        try:
+            (changed,) = parse(text := altered(to_text([drawn(seed)]), chance))
+        except UnreadableError:
+            continue
+        some = [Case(random_claim(changed, chance), changed) for _ in range(5)]
+        found = is_certified(changed)
+        said = [answer(c) if found else f"{changed.label}: REFUSED: its monitor is not certified" for c in some]
+        assert judged(certify, tmp_path, text, evidence((case.claim for case in some), text))[1] == said
+        answers[found] += 1
+    assert min(answers.values()) > 5
+
+
+def small_document() -> tuple[str, str]:
+    """Certificates, and a document that is right."""
+    case = next(case for case in cases() if answer(case).endswith("as claimed"))
+    certificates = certificates_of([case])
+    return certificates, evidence([case.claim], certificates)
+
+
+def test_the_extracted_judge_notices_every_byte_that_is_changed(certify: Path, tmp_path: Path) -> None:
+    certificates, document = small_document()
+    assert judged(certify, tmp_path, certificates, document)[0] == 0
+    for place, old in enumerate(document):
+        new = "1" if old == "0" else "0"
+        by = new if place % 4 else ""
+        assert judged(certify, tmp_path, certificates, document[:place] + by + document[place + 1 :])[0] != 0
+
+
+def test_the_extracted_judge_takes_no_other_certificates_than_those_that_are_named(
+    certify: Path, tmp_path: Path
+) -> None:
+    certificates, document = small_document()
+    code, said = judged(certify, tmp_path, certificates + "# the same\n", document)
+    assert (code, said[0]) == (1, "REFUSED: the certificates are not those that the evidence names")
+
+
+def test_the_extracted_judge_reads_evidence_of_several_recordings(certify: Path, tmp_path: Path) -> None:
+    certificates, document = small_document()
+    code, said = judged(certify, tmp_path, certificates, document * 3)
+    assert (code, len(said)) == (0, 3)
+    assert judged(certify, tmp_path, certificates, document + document[:-1])[0] == 2
