@@ -114,6 +114,16 @@ def test_a_scope_that_a_count_opens_is_judged_by_rows() -> None:
     assert set(fast.ways[0].because) == {"it counts, and is stepped"}
 
 
+def test_ages_count_from_messages_between_ticks_beside_a_property_with_the_same_news() -> None:
+    # At 0.25 s a message comes between ticks; with the news of ticks alone, the age would count from 0.5 s.
+    some = [Row(0, {"v": 1.0}), Row(SECOND // 4, {"v": 1.0}), *(row(i, w=1.0) for i in range(10, 40, 10))]
+    text = "always (new v implies eventually new v within 9 s)\nq: always age(v) <= 1 s\n_rate_ = 2"
+    reference, fast = judged(Drawn(f"{DECLARATIONS}p: {text}\n", [some]))
+    assert state(fast.session) == state(reference)
+    times = {track.property.label: track.decided_at and track.decided_at.time for track in fast.session.tracks}
+    assert times["q"] == SECOND // 4 + SECOND + 1
+
+
 def alike(text: str, rows: list[Row]) -> None:
     reference, fast = judged(Drawn(f"{DECLARATIONS}p: {text}\n", [rows]))
     assert not fast.ways[0].because

@@ -92,7 +92,7 @@ class ByBlocks:
                 window,
                 of := by_track[id(track)],
                 None if of.tables is None or track.observer is not None else Forward(track, of, of.tables),
-                reads.setdefault(_reads(track.property), len(reads)),
+                reads.setdefault((_reads(track.property), has_ages(track)), len(reads)),
             )
             for track, window in session.stepped
         ]
