@@ -12,7 +12,6 @@ from time import perf_counter_ns
 from ltlc.assurance.evidence.document import printed
 from ltlc.automata import Budget
 from ltlc.base.files import refuse_unwritable, write_all
-from ltlc.frontend.language import STDIN
 from ltlc.inputs.recordings import Block
 from ltlc.interfaces.commands import arguments
 from ltlc.interfaces.commands.common import OK, compile_file, overwritten, refused, report, unusable, unwritable
@@ -99,8 +98,6 @@ def _run(options: argparse.Namespace) -> int:
     named = [each for each in options.recordings if is_one([each])]
     if twice := overwritten(outputs, [options.specification, *named]):
         return refused(twice)
-    if options.evidence and options.specification == STDIN:
-        return unusable("--evidence needs the specification in a file, whose SHA-256 it states")
     for path in filter(None, (options.report, options.output, options.evidence)):
         try:
             refuse_unwritable(path)
@@ -121,7 +118,7 @@ def _run(options: argparse.Namespace) -> int:
 
         with saying("making certificates", options.quiet):
             budget = Budget(*options.budget)
-            evidence = evidence_by(prepared.compiled, prepared.specification, options.specification, budget)
+            evidence = evidence_by(prepared.compiled, prepared.specification, budget)
     judge = Judge(
         prepared.compiled,
         prepared.specification,

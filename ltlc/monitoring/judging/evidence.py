@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
-from pathlib import Path
+from pathlib import Path, PurePath
 
 from ltlc.assurance.evidence.conditions import NotCoveredError, stated_atoms
 from ltlc.assurance.evidence.definitions import digests
@@ -14,6 +13,7 @@ from ltlc.assurance.evidence.document import Claim, Document, File, Head, NotCov
 from ltlc.base.codes import diagnostic
 from ltlc.base.diagnostics import Diagnostic
 from ltlc.base.limits import Budget
+from ltlc.base.provenance import digest_of
 from ltlc.base.revision import version_text
 from ltlc.base.source import Source
 from ltlc.compiler import Compiled
@@ -51,8 +51,8 @@ class Evidence:
         return None if isinstance(self.stated[label], str) else Letters(of, self.rate is not None)
 
 
-def evidence_by(compiled: Sequence[Compiled], specification: Specification, source: Path, budget: Budget) -> Evidence:
-    """What evidence says of every recording; the specification is in the file `source`. Raises OSError."""
+def evidence_by(compiled: Sequence[Compiled], specification: Specification, budget: Budget) -> Evidence:
+    """What evidence says of every recording; the certificate of each property may take that `budget`."""
     from ltlc.assurance.evidence.certified import certificates  # which imports what makes certificates
 
     text, reasons = certificates(compiled, budget)
@@ -67,7 +67,7 @@ def evidence_by(compiled: Sequence[Compiled], specification: Specification, sour
             stated[label] = f"it has no certificate: {reasons[label]}"
     return Evidence(
         version_text(),
-        (source.name, hashlib.sha256(source.read_bytes()).hexdigest()),
+        (PurePath(specification.source.name).name, specification.source.sha256),
         digest(text),
         tuple(each.specification for each in compiled),
         stated,
@@ -99,9 +99,8 @@ def files_of(path: Path) -> list[tuple[str, Path]]:
 
 
 def _file(name: str, path: Path) -> File:
-    with path.open("rb") as file:
-        sha256 = hashlib.file_digest(file, "sha256").hexdigest()
-        return File(name, file.tell(), sha256)
+    found = digest_of(path)
+    return File(name, found.bytes, found.sha256)
 
 
 @dataclass(frozen=True)
