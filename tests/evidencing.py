@@ -12,8 +12,8 @@ from random import Random
 from typing import Any
 
 import numpy as np
-from rosbags.rosbag2 import StoragePlugin, Writer
-from rosbags.typesys import Stores, get_typestore
+from rosbags.rosbag2 import StoragePlugin, Writer  # noqa: TID251
+from rosbags.typesys import Stores, get_typestore  # noqa: TID251
 
 from ltlc.assurance.evidence import recorded
 from ltlc.assurance.evidence.document import Document, printed
@@ -175,7 +175,8 @@ class Messages:
             case "/q":
                 pose = make("geometry_msgs/msg/Pose", position=self._vector("Point"), orientation=self._quaternion())
                 return make(name, header=header(), pose=pose)
-        return make(name, data=self._any())
+            case _:
+                return make(name, data=self._any())
 
     def _any(self) -> float:
         return self._chance.choice([0.0, 0.3, 0.5, 1.0, 1.7, 2.5, 3.9, -1.0, -0.0, np.nan, np.inf])

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from random import Random
+from typing import Any
 
 import pytest
 from evidencing import (
@@ -21,7 +22,7 @@ from evidencing import (
     specification,
     write_bag,
 )
-from rosbags.typesys import Stores, get_typestore
+from rosbags.typesys import Stores, get_typestore  # noqa: TID251
 
 from ltlc.assurance.evidence import recorded
 from ltlc.assurance.evidence.definitions import definition_text
@@ -43,7 +44,6 @@ from ltlc.semantics.verdicts import Verdict
 
 BAGS = Path(__file__).parents[2] / "shared" / "data" / "bags"
 SECOND = 10**9
-OLD = {"BASE": ("byte", "octet", "char")}
 
 
 def floats(topic: str, *values: float) -> list[tuple[int, str, object]]:
@@ -232,7 +232,8 @@ def changed_atoms(document: Document) -> list[Document]:
     """Each with one number, name or word of one atom changed."""
     found = []
     for number, claim in enumerate(document.properties):
-        for place, atom in enumerate(claim.atoms if isinstance(claim, Claim) else ()):
+        assert isinstance(claim, Claim)
+        for place, atom in enumerate(claim.atoms):
             for condition in changed(atom.condition):
                 atoms = (*claim.atoms[:place], StatedAtom(atom.name, condition), *claim.atoms[place + 1 :])
                 others = document.properties[:number], document.properties[number + 1 :]
@@ -240,7 +241,7 @@ def changed_atoms(document: Document) -> list[Document]:
     return found
 
 
-def changed(part: object) -> list[object]:
+def changed(part: Any) -> list[Any]:
     match part:
         case bool():
             return [not part]
@@ -252,7 +253,8 @@ def changed(part: object) -> list[object]:
             return [[*part[:n], new, *part[n + 1 :]] for n, each in enumerate(part) for new in changed(each)]
         case dict():
             return [part | {key: new} for key, each in part.items() for new in changed(each)]
-    return []
+        case _:
+            return []
 
 
 def test_an_atom_that_is_something_else_is_noticed_by_the_seam(tmp_path: Path) -> None:

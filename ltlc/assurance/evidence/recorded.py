@@ -34,10 +34,12 @@ EXACT = 2**53
 MOST_TICKS = 10**8
 MOST_COMBINATIONS = 10**6
 PIECE = 1 << 20
-"""So many elements of arrays are looked at at once."""
+"""So many elements of arrays, or lines, are looked at at once."""
 BAGS = (".mcap", ".db3", ".bag")
 
 Json = Any
+Array = Any
+"""An array of numpy."""
 
 
 class Refused(Exception):  # noqa: N818
@@ -45,26 +47,40 @@ class Refused(Exception):  # noqa: N818
 
 
 class NotCovered(Exception):  # noqa: N818
-    """This program cannot say."""
+    """Not to be told by this program."""
 
 
 # The document --------------------------------------------------------------------------------------------------------
 
+HEAD = {"ltlc", "specification", "certificates", "recording", "definition", "rate", "timeout", "stamp", "from", "to"}
+CLAIM = {"property", "text", "requirement", "verifies", "atom", "is", "session", "letters", "until", "verdict"}
+
 
 @dataclass
-class Claim:
-    """What is claimed of a property; `lines` are times and letters, whose bits are the atoms."""
+class Part:
+    """The head of a document, or a claim: what follows each word. `lines` are times and letters, bits of the atoms."""
 
-    label: str
-    names: list[str] = field(default_factory=list)
-    atoms: list[Json] = field(default_factory=list)
-    session: int = -1
+    said: dict[str, list[str]] = field(default_factory=dict)
     lines: list[tuple[int, int]] = field(default_factory=list)
-    summed: str = ""
-    until: int = -1
-    verdict: str = ""
-    decided: int = -1
-    found: tuple[np.ndarray, np.ndarray] | None = None
+    found: tuple[Array, Array] | None = None
+
+    def one(self, word: str) -> str:
+        """What follows a word that is there once, or not."""
+        return self.said.get(word, [""])[-1]
+
+    def time(self, word: str) -> int | None:
+        """What follows a word, as a number; None if it is not there."""
+        return number(self.one(word)) if word in self.said else None
+
+    def digests(self, word: str) -> dict[str, str]:
+        """What stands before and behind the word `sha256`."""
+        found = (each.partition("sha256 ") for each in self.said.get(word, []))
+        return {name.rstrip(): digest for name, _, digest in found}
+
+    @property
+    def atoms(self) -> list[Json]:
+        """What the atoms are."""
+        return [json.loads(each) for each in self.said.get("is", [])]
 
 
 @dataclass
@@ -72,16 +88,9 @@ class Document:
     """The evidence of one recording: all its `rows` of text, and what they say."""
 
     rows: list[str]
-    files: dict[str, tuple[int, str]] = field(default_factory=dict)
-    certificates: str = ""
-    definitions: dict[str, str] = field(default_factory=dict)
-    rate: Fraction | None = None
-    timeout: int | None = None
-    by_header: bool = False
-    since: int | None = None
-    to: int | None = None
-    claims: list[Claim] = field(default_factory=list)
-    not_covered: list[str] = field(default_factory=list)
+    head: Part
+    claims: list[Part]
+    not_covered: list[str]
 
 
 def documents(text: str) -> Iterator[Document]:
@@ -104,68 +113,28 @@ def parsed(rows: list[str]) -> Document:
     """What the lines of a document say."""
     if not rows or rows[0] != "ltlc-evidence 1":
         raise Refused("this is no evidence")
-    found = Document(rows)
+    found = Document(rows, Part(), [], [])
     for row in rows[1:]:
         word, _, rest = row.partition(" ")
-        match word:
-            case "recording" | "definition" | "specification" | "certificates":
-                named, _, digest = rest.rpartition("sha256 ")
-                name, _, size = named.rstrip().rpartition(" ")
-                if word == "recording":
-                    found.files[name] = (number(size), digest)
-                elif word == "definition":
-                    found.definitions[named.rstrip()] = digest
-                elif word == "certificates":
-                    found.certificates = digest
-            case "rate":
-                found.rate = Fraction(rest)
-            case "timeout":
-                found.timeout = number(rest)
-            case "stamp":
-                found.by_header = True
-            case "from":
-                found.since = number(rest)
-            case "to":
-                found.to = number(rest)
-            case "not-covered":
-                found.not_covered.append(rest)
-            case "property":
-                found.claims.append(Claim(rest))
-            case "ltlc" | "text" | "requirement" | "verifies" | "":
-                pass
-            case _:
-                if not found.claims:
-                    raise Refused(f"what is this: {row[:80]}")
-                take(found.claims[-1], word, rest)
+        if word == "property":
+            found.claims.append(Part())
+        part, known = (found.claims[-1], CLAIM) if found.claims else (found.head, HEAD)
+        if word in known:
+            part.said.setdefault(word, []).append(rest)
+        elif word == "not-covered":
+            found.not_covered.append(rest)
+        elif word == "at" and known is CLAIM and not part.lines:
+            time, _, letter = rest.partition(" ")
+            part.lines.append((number(time), bits_of(letter)))
+        elif word.startswith("+") and part.lines:
+            part.lines.append((part.lines[-1][0] + number(word[1:]), bits_of(rest)))
+        elif word:
+            raise Refused(f"what is this: {row[:80]}")
     return found
 
 
-def take(claim: Claim, word: str, rest: str) -> None:
-    """A line of a claim."""
-    match word:
-        case "atom":
-            claim.names.append(rest)
-        case "is":
-            claim.atoms.append(json.loads(rest))
-        case "session":
-            claim.session = number(rest)
-        case "until":
-            claim.until = number(rest)
-        case "letters":
-            claim.summed = rest
-        case "verdict":
-            claim.verdict, _, decided = rest.partition(" ")
-            claim.decided = number(decided)
-        case "at":
-            time, _, letter = rest.partition(" ")
-            claim.lines.append((number(time), bits_of(letter)))
-        case _ if word.startswith("+") and claim.lines:
-            claim.lines.append((claim.lines[-1][0] + number(word[1:]), bits_of(rest)))
-        case _:
-            raise Refused(f"what is this: {word} {rest[:80]}")
-
-
 def number(text: str) -> int:
+    """A number as it is written."""
     if not re.fullmatch(r"0|[1-9][0-9]{0,18}", text):
         raise Refused(f"not a number: {text[:80]}")
     return int(text)
@@ -189,17 +158,19 @@ def files_of(path: Path) -> dict[str, Path]:
 
 
 def is_bag(name: str) -> bool:
+    """Whether a file is one, by its name."""
     return name.lower().removesuffix(".zstd").endswith(BAGS)
 
 
 def sha256(path: Path) -> str:
+    """The digest of a file."""
     with path.open("rb") as file:
         return hashlib.file_digest(file, "sha256").hexdigest()
 
 
-def told(path: Path) -> dict[str, tuple[int, str]]:
-    """The files of a recording with their sizes and digests."""
-    return {name: (at.stat().st_size, sha256(at)) for name, at in files_of(path).items()}
+def told(path: Path) -> dict[str, str]:
+    """The files of a recording with their sizes, and their digests."""
+    return {f"{name} {at.stat().st_size}": sha256(at) for name, at in files_of(path).items()}
 
 
 # What is recorded ----------------------------------------------------------------------------------------------------
@@ -235,6 +206,7 @@ def parts(x: Json) -> Iterator[Json]:
 
 
 def fields_of(x: Json) -> list[Json]:
+    """The fields that it reads."""
     return [part for part in parts(x) if "path" in part]
 
 
@@ -290,14 +262,14 @@ def read(path: Path, document: Document) -> Recording:
 
 def open_bag(path: Path, document: Document, stack: ExitStack) -> Any:
     """The bag at a path; where it defines no messages, they are those of the release that the digests are of."""
-    from rosbags.highlevel import AnyReader
-    from rosbags.typesys import Stores, get_typestore
+    from rosbags.highlevel import AnyReader  # noqa: TID251
+    from rosbags.typesys import Stores, get_typestore  # noqa: TID251
 
     releases = [store for store in Stores if store.name.startswith("ROS2_")]
     for release in sorted(releases, key=lambda store: store is not Stores.ROS2_JAZZY):
         reader = stack.enter_context(AnyReader([path], default_typestore=get_typestore(release)))
-        found = {name: definition_digest(reader.typestore, name) for name in document.definitions}
-        if found == document.definitions:
+        wanted = document.head.digests("definition")
+        if wanted == {name: definition_digest(reader.typestore, name) for name in wanted}:
             return reader
         reader.close()
         stack.pop_all()
@@ -320,7 +292,7 @@ def type_text(kind: Any) -> str:
     """The type of a field, as rosbags has it."""
     of, what = kind
     if of.name == "BASE":
-        return {"byte": "uint8", "octet": "uint8", "char": "uint8"}.get(what[0], what[0])
+        return "uint8" if what[0] in ("byte", "octet", "char") else str(what[0])
     if of.name == "NAME":
         return str(what)
     return f"{type_text(what[0])}[{what[1] if of.name == 'ARRAY' else ''}]"
@@ -329,56 +301,50 @@ def type_text(kind: Any) -> str:
 def read_bag(reader: Any, document: Document, wanted: dict[str, dict[str, Json]]) -> Recording:
     """All messages in the order of time, and of the file among equal times."""
     found = Recording(None, None, {name: Topic(values={path: [] for path in paths}) for name, paths in wanted.items()})
-    takers: dict[int, tuple[Topic, list[tuple[list[Any], Any]]] | None] = {}
+    by_header = document.head.one("stamp") == "header"
+    takers: dict[int, tuple[Topic, list[tuple[list[Any], Callable[[Any], Any]]]]] = {}
     for connection in reader.connections:
         name = f"/{connection.topic.lstrip('/')}"
-        fields = list(wanted.get(name, {}).items())
-        for _, each in fields:
-            if each["type"] != connection.msgtype:
+        if name in wanted:
+            if any(each["type"] != connection.msgtype for each in wanted[name].values()):
                 raise NotCovered(f"{name} has messages of type {connection.msgtype}")
-        topic = found.topics.get(name)
-        taken = [(topic.values[path], getter(each["path"])) for path, each in fields] if topic else []
-        takers[id(connection)] = (topic, taken) if topic else None
+            values = found.topics[name].values
+            gets = [(values[path], getter(each["path"])) for path, each in wanted[name].items()]
+            takers[id(connection)] = found.topics[name], gets
     for place, (connection, time, raw) in enumerate(reader.messages()):
         found.first = time if found.first is None else min(time, found.first)
         found.last = time if found.last is None else max(time, found.last)
-        taker = takers[id(connection)]
-        if taker is None:
+        if id(connection) not in takers:
             continue
-        topic, fields = taker
-        needs = fields or document.by_header
-        message = reader.deserialize(raw, connection.msgtype) if needs else None
-        if document.by_header:
-            stamp = getattr(getattr(message, "header", None), "stamp", None)
-            time = time if stamp is None else stamp.sec * SECOND + stamp.nanosec
-            if stamp is not None and not time:
+        topic, gets = takers[id(connection)]
+        message = reader.deserialize(raw, connection.msgtype) if gets or by_header else None
+        if by_header and (stamp := getattr(getattr(message, "header", None), "stamp", None)) is not None:
+            time = stamp.sec * SECOND + stamp.nanosec
+            if not time:
                 continue
         topic.times.append(time)
         topic.places.append(place)
-        for values, get in fields:
-            values.append(get(message))
-    return part_of(found, document)
+        for taken, get in gets:
+            taken.append(get(message))
+    return part_of(found, document.head, by_header=by_header)
 
 
-def part_of(found: Recording, document: Document) -> Recording:
+def part_of(found: Recording, head: Part, *, by_header: bool) -> Recording:
     """The messages in the times that are asked for, in their order."""
-    since, to = document.since, document.to
+    since, to = head.time("from"), head.time("to")
+    earliest, latest = -math.inf if since is None else since, math.inf if to is None else to
     for topic in found.topics.values():
         order = sorted(range(len(topic.times)), key=lambda n: (topic.times[n], topic.places[n]))
-        if since is not None or to is not None:
-            least, most = -math.inf if since is None else since, math.inf if to is None else to
-            order = [n for n in order if least <= topic.times[n] <= most]
-        if order != list(range(len(topic.times))):
-            topic.times, topic.places = [topic.times[n] for n in order], [topic.places[n] for n in order]
-            topic.values = {path: [of[n] for n in order] for path, of in topic.values.items()}
-    if document.by_header:
-        firsts = [(topic.times[0], topic.times[-1]) for topic in found.topics.values() if topic.times]
-        found.first = min((first for first, _ in firsts), default=None)
-        found.last = max((last for _, last in firsts), default=None)
+        order = [n for n in order if earliest <= topic.times[n] <= latest]
+        topic.times, topic.places = [topic.times[n] for n in order], [topic.places[n] for n in order]
+        topic.values = {path: [of[n] for n in order] for path, of in topic.values.items()}
+    if by_header:
+        spans = [(topic.times[0], topic.times[-1]) for topic in found.topics.values() if topic.times]
+        found.first = min((first for first, _ in spans), default=None)
+        found.last = max((last for _, last in spans), default=None)
     elif since is not None and found.first is not None:
         found.first = max(since, found.first)
-    if to is not None:
-        found.last = to
+    found.last = found.last if to is None else to
     return found
 
 
@@ -389,29 +355,32 @@ def part_of(found: Recording, document: Document) -> Recording:
 class Lists:
     """Arrays of many lengths: their elements one after the other, where each begins and how long it is."""
 
-    elements: np.ndarray
-    starts: np.ndarray
-    lengths: np.ndarray
+    elements: Array
+    starts: Array
+    lengths: Array
 
-    def taken(self, at: np.ndarray) -> Lists:
+    def taken(self, at: Array) -> Lists:
+        """Some of them."""
         return Lists(self.elements, self.starts[at], self.lengths[at])
 
     def each(self) -> Iterator[list[Any]]:
+        """One after the other."""
         for start, length in zip(self.starts.tolist(), self.lengths.tolist(), strict=True):
             yield self.elements[start : start + length].tolist()
 
-    def packed(self) -> np.ndarray:
+    def packed(self) -> Array:
         """The elements of all of them."""
         return self.elements[self.starts.repeat(self.lengths) + within(self.lengths)]
 
 
-def within(lengths: np.ndarray) -> np.ndarray:
+def within(lengths: Array) -> Array:
     """0, 1, … for each length."""
     ends = lengths.cumsum()
     return np.arange(int(lengths.sum())) - (ends - lengths).repeat(lengths)
 
 
 def as_lists(arrays: list[Any]) -> Lists:
+    """Arrays as they come in messages."""
     lengths = np.array([len(each) for each in arrays], np.int64)
     some = [each for each in arrays if len(each)]
     if some and isinstance(some[0], np.ndarray):
@@ -421,7 +390,7 @@ def as_lists(arrays: list[Any]) -> Lists:
     return Lists(elements, lengths.cumsum() - lengths, lengths)
 
 
-def column(values: list[Any]) -> np.ndarray:
+def column(values: list[Any]) -> Array:
     """Values of one type as an array: doubles, booleans, integers of 64 bits, or others as they are."""
     if not values:
         return np.zeros(0)
@@ -430,94 +399,81 @@ def column(values: list[Any]) -> np.ndarray:
     if isinstance(values[0], str):
         return as_objects(values)
     if isinstance(values[0], (int, np.integer)):
-        if -EXACT <= min(values) and max(values) <= EXACT:
+        if min(values) >= -EXACT and max(values) <= EXACT:
             return np.array(values, np.int64)
         return as_objects([int(value) for value in values])
     return np.array(values, np.float64)
 
 
-def as_objects(values: list[Any]) -> np.ndarray:
+def as_objects(values: list[Any]) -> Array:
+    """Values as they are."""
     found = np.empty(len(values), object)
     found[:] = values
     return found
 
 
-def doubles(values: np.ndarray) -> np.ndarray:
+def doubles(values: Array) -> Array:
     """The nearest doubles."""
     return np.array([float(value) for value in values]) if values.dtype == object else values.astype(np.float64)
 
 
-def is_nan(values: np.ndarray) -> np.ndarray:
+def is_nan(values: Array) -> Array:
+    """Where they are NaN."""
     return np.isnan(values) if values.dtype == np.float64 else np.zeros(len(values), bool)
 
 
-def compared(op: str, left: np.ndarray, right: np.ndarray, margin: float) -> np.ndarray:
+COMPARISONS = {"==": np.equal, "same": np.equal, "<": np.less, "<=": np.less_equal, ">": np.greater,
+               ">=": np.greater_equal}  # fmt: skip
+
+
+def compared(op: str, left: Array, right: Array, margin: float) -> Array:
     """A comparison: exact without a margin, in doubles with one."""
+    if op not in COMPARISONS:
+        raise Refused(f"no such comparison: {op}")
     if margin:
         left, right = doubles(left), doubles(right)
         if op == "==":
             return (left == right) | (np.abs(left - right) <= margin)
         right = right + margin
-    match op:
-        case "==" | "same":
-            found = left == right
-        case "<":
-            found = left < right
-        case "<=":
-            found = left <= right
-        case ">":
-            found = left > right
-        case ">=":
-            found = left >= right
-        case _:
-            raise Refused(f"no such comparison: {op}")
-    return np.asarray(found).astype(bool)
+    return np.asarray(COMPARISONS[op](left, right)).astype(bool)
 
 
 # Functions -----------------------------------------------------------------------------------------------------------
 
 
-def called(name: str, given: list[np.ndarray]) -> np.ndarray:
+AT_ONCE: dict[str, Callable[..., Array]] = {
+    "+": np.add,
+    "-": np.subtract,
+    "*": np.multiply,
+    "/": np.true_divide,
+    "sqrt": np.sqrt,
+    "floor": lambda x: np.floor(x) + 0.0,
+    "ceil": lambda x: np.ceil(x) + 0.0,
+    "sign": lambda x: np.sign(x) + 0.0,
+    "gap": lambda x, y: np.where(x == y, 0.0, x - y),
+}
+"""What numpy computes as IEEE 754 has it, in doubles."""
+
+
+def called(name: str, given: list[Array]) -> Array:
     """A function of numbers, of doubles unless it says otherwise."""
-    match name:
-        case "neg":
-            return -given[0]
-        case "abs":
-            return np.abs(given[0])
-        case "min" | "max":
-            return extreme(name, given)
+    if name in ("neg", "abs"):
+        return -given[0] if name == "neg" else np.abs(given[0])
+    if name in ("min", "max"):
+        return extreme(name, given)
     given = [doubles(each) for each in given]
-    match name:
-        case "+":
-            return given[0] + given[1]
-        case "-":
-            return given[0] - given[1]
-        case "*":
-            return given[0] * given[1]
-        case "/":
-            return given[0] / given[1]
-        case "sqrt":
-            return np.sqrt(given[0])
-        case "floor":
-            return np.floor(given[0]) + 0.0
-        case "ceil":
-            return np.ceil(given[0]) + 0.0
-        case "sign":
-            return np.sign(given[0]) + 0.0
-        case "gap":
-            return np.where(given[0] == given[1], 0.0, given[0] - given[1])
+    if name in AT_ONCE:
+        return AT_ONCE[name](*given)
     if name not in ONE_BY_ONE:
         raise NotCovered(f"the function {name}")
-    function, known = ONE_BY_ONE[name], {}
-    found = np.empty(len(given[0]))
-    for at, values in enumerate(zip(*(each.tolist() for each in given), strict=True)):
-        if values not in known:
-            known[values] = math.nan if any(map(math.isnan, values)) else function(*values)
-        found[at] = known[values]
-    return found
+    known: dict[tuple[float, ...], float] = {}
+    rows = list(zip(*(each.tolist() for each in given), strict=True))
+    for values in {*rows}:
+        known[values] = math.nan if any(map(math.isnan, values)) else ONE_BY_ONE[name](*values)
+    return np.array([known.get(values, math.nan) for values in rows], np.float64)
 
 
-def extreme(name: str, given: list[np.ndarray]) -> np.ndarray:
+def extreme(name: str, given: list[Array]) -> Array:
     """The least or greatest: of integers and constants that are such exactly, else in doubles."""
     if any(each.dtype == object for each in given) and all(are_integers(each) for each in given):
         choose = min if name == "min" else max
@@ -530,7 +486,8 @@ def extreme(name: str, given: list[np.ndarray]) -> np.ndarray:
     return np.where(wrong, math.nan, found)
 
 
-def are_integers(values: np.ndarray) -> bool:
+def are_integers(values: Array) -> bool:
+    """Whether they are, or one constant that is one."""
     return values.dtype != np.float64 or bool(len(values) and (values == values[0]).all() and values[0] % 1 == 0)
 
 
@@ -549,6 +506,7 @@ def outside_nan(function: Callable[..., float]) -> Callable[..., float]:
 
 
 def remainder(x: float, y: float) -> float:
+    """Of a division, with the sign of the divisor, rounded once."""
     if y == 0 or math.isinf(x):
         return math.nan
     if math.isinf(y):
@@ -557,26 +515,31 @@ def remainder(x: float, y: float) -> float:
 
 
 def between_angles(one: float, other: float) -> float:
+    """How far apart two directions are."""
     turn = one - other
     return abs(math.remainder(turn, math.tau)) if math.isfinite(turn) else math.nan
 
 
 def unit(*q: float) -> list[float]:
+    """The quaternion of length 1 that is the same orientation."""
     length = math.hypot(*q)
     return [math.nan] * 4 if length == 0 or math.isinf(length) else [each / length for each in q]
 
 
 def roll(*q: float) -> float:
+    """About x, after yaw and pitch."""
     x, y, z, w = unit(*q)
     return math.atan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y))
 
 
 def pitch(*q: float) -> float:
+    """About y, after yaw."""
     x, y, z, w = unit(*q)
     return math.nan if math.isnan(x) else math.asin(max(-1.0, min(1.0, 2 * (w * y - z * x))))
 
 
 def yaw(*q: float) -> float:
+    """About z."""
     x, y, z, w = unit(*q)
     return math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
 
@@ -589,7 +552,8 @@ def angle(*both: float) -> float:
     return 4 * math.atan2(min(apart, together), max(apart, together))
 
 
-def edges(corners: tuple[float, ...]) -> Iterator[tuple[float, float, float, float]]:
+def edges(corners: tuple[float, ...]) -> Iterator[tuple[float, ...]]:
+    """From each corner to the next, and from the last to the first."""
     points = [corners[n : n + 2] for n in range(0, len(corners), 2)]
     return ((*one, *other) for one, other in zip(points, [*points[1:], points[0]], strict=True))
 
@@ -610,6 +574,7 @@ def inside(x: float, y: float, *corners: float) -> float:
 
 
 def distance(x: float, y: float, *corners: float) -> float:
+    """From the nearest edge; 0 inside."""
     if inside(x, y, *corners):
         return 0.0
     return min(from_edge(x - ax, y - ay, bx - ax, by - ay) for ax, ay, bx, by in edges(corners))
@@ -625,13 +590,20 @@ def from_edge(x: float, y: float, along: float, across: float) -> float:
 ONE_BY_ONE: dict[str, Callable[..., float]] = {
     **{name: outside_nan(getattr(math, name)) for name in ("exp", "sin", "cos", "tan", "asin", "acos", "atan2")},
     "log": outside_nan(lambda x: -math.inf if x == 0 else math.log(x)),
-    **{"hypot": math.hypot, "mod": remainder, "angle_between": between_angles, "roll": roll, "pitch": pitch},
-    **{"yaw": yaw, "angle": angle, "inside": inside, "distance": distance},
+    "hypot": math.hypot,
+    "mod": remainder,
+    "angle_between": between_angles,
+    "roll": roll,
+    "pitch": pitch,
+    "yaw": yaw,
+    "angle": angle,
+    "inside": inside,
+    "distance": distance,
 }
 """What is computed by Python's mathematical library, for numbers none of which is NaN."""
 
 
-def folded(name: str, lists: Lists) -> np.ndarray:
+def folded(name: str, lists: Lists) -> Array:
     """A function of each of many arrays."""
     if name == "len":
         return lists.lengths
@@ -646,7 +618,7 @@ def folded(name: str, lists: Lists) -> np.ndarray:
     return np.array([function([float(value) for value in each]) for each in lists.each()], np.float64)
 
 
-def fastest(name: str, function: Callable[[list[float]], float], lists: Lists) -> np.ndarray:
+def fastest(name: str, function: Callable[[list[float]], float], lists: Lists) -> Array:
     """The extreme elements of all arrays; which of 0 and -0 it is, the first one says."""
     found, some = np.full(len(lists.lengths), math.nan), np.flatnonzero(lists.lengths)
     if len(some):
@@ -660,14 +632,17 @@ def fastest(name: str, function: Callable[[list[float]], float], lists: Lists) -
 
 
 def measured(values: list[float]) -> list[float]:
+    """Those that are not NaN."""
     return [value for value in values if not math.isnan(value)]
 
 
 def least(values: list[float]) -> float:
+    """The least element."""
     return min(measured(values), default=math.nan)
 
 
 def most(values: list[float]) -> float:
+    """The greatest element."""
     return max(measured(values), default=math.nan)
 
 
@@ -684,6 +659,7 @@ def total(values: list[float]) -> float:
 
 
 def mean(values: list[float]) -> float:
+    """The sum by the number."""
     known = measured(values)
     return total(known) / len(known) if known else math.nan
 
@@ -698,6 +674,7 @@ def median(values: list[float]) -> float:
 
 
 def nearest(sought: float, values: list[float]) -> float:
+    """The first that differs least."""
     known = measured(values)
     if math.isnan(sought) or not known:
         return math.nan
@@ -711,11 +688,11 @@ def nearest(sought: float, values: list[float]) -> float:
 class Samples:
     """The samples of a signal: their values, and at which instants there is one."""
 
-    values: np.ndarray | Lists
-    fresh: np.ndarray
+    values: Any
+    fresh: Array
 
     @property
-    def numbers(self) -> np.ndarray:
+    def numbers(self) -> Array:
         """Which is the latest at each instant; -1: none."""
         return self.fresh.cumsum() - 1
 
@@ -737,14 +714,14 @@ class Instants:
             self.times = np.array([time for time, _ in ordered], np.int64)
         self.count = len(self.times)
 
-    def at(self, name: str) -> np.ndarray:
+    def at(self, name: str) -> Array:
         """At which instants the messages of a topic come; of ticks, which is the first to see each."""
         topic = self.topics[name]
         if self.is_ticks:
             return self.times.searchsorted(np.array(topic.times, np.int64))
         return np.array([self.places[place] for place in topic.places], np.int64)
 
-    def heard(self, names: Iterable[str], *, now: bool = False) -> np.ndarray:
+    def heard(self, names: Iterable[str], *, now: bool = False) -> Array:
         """Where there is news of some topics; with `now`, at this very time."""
         found = np.zeros(self.count, bool)
         for name in names:
@@ -774,7 +751,7 @@ class Instants:
         return Samples(column(known)[taken], fresh)
 
 
-def ticks(rate: Fraction, start: int, end: int | None) -> np.ndarray:
+def ticks(rate: Fraction, start: int, end: int | None) -> Array:
     """The times of ticks, cut off to nanoseconds."""
     period = SECOND / rate
     count = 0 if end is None or end < start else int((end - start) / period) + 1
@@ -796,6 +773,7 @@ class Values:
         self.kept: dict[str, Any] = {}
 
     def once(self, kind: str, x: Json, make: Callable[[], Any]) -> Any:
+        """What is made once of an expression."""
         key = kind + json.dumps(x)
         if key not in self.kept:
             self.kept[key] = make()
@@ -805,7 +783,8 @@ class Values:
 
     def samples(self, x: Json) -> Samples:
         """The samples of a signal: a field, or something computed from others."""
-        return self.once("samples", x, lambda: self.instants.samples(x) if "path" in x else self.computed(x))
+        found: Samples = self.once("samples", x, lambda: (self.instants.samples if "path" in x else self.computed)(x))
+        return found
 
     def computed(self, x: Json) -> Samples:
         """There is one where a part has one, with `when` only where that holds and nothing is NaN."""
@@ -816,7 +795,7 @@ class Values:
                 fresh &= ~is_nan(self.number(side))
         return Samples(values[fresh], fresh)
 
-    def fresh(self, x: Json) -> np.ndarray:
+    def fresh(self, x: Json) -> Array:
         """Where something that is read has a sample, or news."""
         found = np.zeros(self.instants.count, bool)
         for part in parts(x):
@@ -827,7 +806,7 @@ class Values:
                     found |= self.instants.heard(part[key])
         return found
 
-    def known(self, x: Json) -> np.ndarray:
+    def known(self, x: Json) -> Array:
         """Where all that is waited for has a value."""
         if isinstance(x, list):
             return np.logical_and.reduce([np.ones(self.instants.count, bool), *map(self.known, x)])
@@ -840,11 +819,11 @@ class Values:
 
     # Values
 
-    def number(self, x: Json) -> np.ndarray:
+    def number(self, x: Json) -> Array:
         """The value of what is no array at each instant; anything where there is none."""
         return self.once("value", x, lambda: self.evaluate(x, None))
 
-    def evaluate(self, x: Json, elements: Elements | None) -> np.ndarray:
+    def evaluate(self, x: Json, elements: Elements | None) -> Array:
         """The value at each instant, or of each of some `elements`."""
         count = self.instants.count if elements is None else elements.count
         if elements is not None and isinstance(x, dict) and not has_element(x):
@@ -873,9 +852,10 @@ class Values:
                 return np.array([nearest(near, [float(v) for v in values]) for near, values in found])
             case {"call": name, "of": given}:
                 return called(name, [self.evaluate(each, elements) for each in given])
-        return self.latest(x)
+            case _:
+                return self.latest(x)
 
-    def latest(self, x: Json) -> np.ndarray:
+    def latest(self, x: Json) -> Array:
         """What is read of a signal, or of messages."""
         if "new" in x:
             return self.instants.heard(x["new"])
@@ -898,16 +878,18 @@ class Values:
             past == 0, math.nan, (values[last] - values[before]) / np.array([t / SECOND for t in past.tolist()])
         )
 
-    def lists(self, x: Json) -> tuple[Lists, np.ndarray]:
+    def lists(self, x: Json) -> tuple[Lists, Array]:
         """Arrays, and which of them is the value at each instant; where there is none, any."""
-        return self.once("lists", x, lambda: self.arrays(x))
+        found: tuple[Lists, Array] = self.once("lists", x, lambda: self.arrays(x))
+        return found
 
-    def arrays(self, x: Json) -> tuple[Lists, np.ndarray]:
+    def arrays(self, x: Json) -> tuple[Lists, Array]:
+        """The same, computed."""
         if isinstance(x, list):
             return as_lists([x]), np.zeros(self.instants.count, np.int64)
         if "slice" in x:
             lists, at = self.lists(x["of"])
-            start, stop, lengths = *x["slice"], lists.lengths
+            (start, stop), lengths = x["slice"], lists.lengths
             first = np.clip(within_bounds(start, lengths, 0), 0, lengths)
             end = np.clip(within_bounds(stop, lengths, lengths), first, lengths)
             return Lists(lists.elements, lists.starts + first, end - first), at
@@ -927,7 +909,7 @@ class Values:
 
     # Conditions
 
-    def predicate(self, x: Json, elements: Elements | None = None) -> np.ndarray:
+    def predicate(self, x: Json, elements: Elements | None = None) -> Array:
         """Where a state predicate holds."""
         match x:
             case True:
@@ -943,9 +925,10 @@ class Values:
             case {"op": op, "left": left, "right": right}:
                 values = self.evaluate(left, elements), self.evaluate(right, elements)
                 return compared(op, *values, x.get("margin", 0.0))
-        raise Refused(f"not a predicate: {json.dumps(x)[:80]}")
+            case _:
+                raise Refused(f"not a predicate: {json.dumps(x)[:80]}")
 
-    def invalid(self, x: Json) -> np.ndarray:
+    def invalid(self, x: Json) -> Array:
         """Where a condition compares something that is NaN, or a first value did not come with its message."""
         found = np.zeros(self.instants.count, bool)
         for side in sides(x):
@@ -965,7 +948,7 @@ class Values:
                 found |= came & ~self.known(part["of"])
         return found
 
-    def counted(self, predicate: Json, over: Json) -> np.ndarray:
+    def counted(self, predicate: Json, over: Json) -> Array:
         """How many elements satisfy a predicate; NaN where something beside them is, or there are too many."""
         arrays = {json.dumps(p["element"]): p["element"] for p in parts(predicate) if "element" in p}
         groups = [[json.dumps(each) for each in group] for group in over] if over else [list(arrays)]
@@ -985,14 +968,15 @@ class Values:
             usable = combinations <= MOST_COMBINATIONS if is_over else np.ones(len(chosen), bool)
             for some in pieces(np.where(usable, combinations, 0)):
                 some = some[usable[some]]
-                elements = Elements(groups, [size[some] for size in sizes], {k: v.taken(some) for k, v in lists.items()}, chosen[some])  # fmt: skip
+                here = {key: of.taken(some) for key, of in lists.items()}
+                elements = Elements(groups, [size[some] for size in sizes], here, chosen[some])
                 counts[some] = elements.sums(self.satisfied(predicate, elements))
             counts[~usable] = math.nan
         for each in alone:
             counts[is_nan(each[chosen])] = math.nan
         return counts[new.cumsum() - 1]
 
-    def satisfied(self, predicate: Json, elements: Elements) -> np.ndarray:
+    def satisfied(self, predicate: Json, elements: Elements) -> Array:
         """Which elements satisfy a predicate: none for which something that is compared is NaN."""
         holds = self.predicate(predicate, elements)
         for part in parts(predicate):
@@ -1005,29 +989,28 @@ class Values:
 class Elements:
     """The combinations of elements of some arrays at some instants: side by side in a group, all with all of others."""
 
-    def __init__(
-        self, groups: list[list[str]], sizes: list[np.ndarray], lists: dict[str, Lists], at: np.ndarray
-    ) -> None:
+    def __init__(self, groups: list[list[str]], sizes: list[Array], lists: dict[str, Lists], at: Array) -> None:
         self.groups, self.lists, self.at = groups, lists, at
         self.totals = np.multiply.reduce(sizes) if sizes else np.zeros(len(at), np.int64)
         self.count = int(self.totals.sum())
-        rest, self.indexes = within(self.totals), []
+        self.indexes: list[Array] = []
+        rest = within(self.totals)
         for size in reversed(sizes):
             repeated = size.repeat(self.totals)
             self.indexes.insert(0, rest % np.maximum(repeated, 1))
             rest = rest // np.maximum(repeated, 1)
 
-    def of(self, array: Json) -> np.ndarray:
+    def of(self, array: Json) -> Array:
         """The elements of an array."""
         key = json.dumps(array)
         [group] = (n for n, each in enumerate(self.groups) if key in each)
         return self.lists[key].elements[self.lists[key].starts.repeat(self.totals) + self.indexes[group]]
 
-    def beside(self, values: np.ndarray) -> np.ndarray:
+    def beside(self, values: Array) -> Array:
         """What is no element, beside each of them."""
         return values[self.at].repeat(self.totals)
 
-    def sums(self, holds: np.ndarray) -> np.ndarray:
+    def sums(self, holds: Array) -> Array:
         """How many there are at each instant."""
         return np.bincount(np.arange(len(self.at)).repeat(self.totals), holds, len(self.at))
 
@@ -1045,6 +1028,7 @@ def latest_of(x: Json) -> tuple[Json, int]:
 
 
 def has_element(x: Json) -> bool:
+    """Whether it is about elements."""
     return any("element" in part for part in parts(x))
 
 
@@ -1060,15 +1044,17 @@ def singles(x: Json) -> Iterator[Json]:
             yield x
 
 
-def within_bounds(index: int | None, lengths: np.ndarray, default: Any) -> np.ndarray:
+def within_bounds(index: int | None, lengths: Array, default: Any) -> Array:
+    """An index that counts from the end if it is negative."""
     return lengths * 0 + default if index is None else (lengths + index if index < 0 else lengths * 0 + index)
 
 
-def nothing(count: int) -> np.ndarray:
+def nothing(count: int) -> Array:
+    """No values."""
     return np.full(count, math.nan)
 
 
-def pieces(sizes: np.ndarray) -> Iterator[np.ndarray]:
+def pieces(sizes: Array) -> Iterator[Array]:
     """The numbers of all, some at a time, which are of limited size altogether."""
     numbers = np.arange(len(sizes))
     marks = (sizes.cumsum() // PIECE).astype(np.int64)
@@ -1083,85 +1069,75 @@ def pieces(sizes: np.ndarray) -> Iterator[np.ndarray]:
 class Run:
     """The instants of a property that may have lines: times and letters, and since when ages count."""
 
-    times: np.ndarray
-    letters: np.ndarray
+    times: Array
+    letters: Array
     session: int
     news: int
 
 
-def run_of(claim: Claim, recorded: Recording, document: Document, first: int, *, apart: bool) -> Run:
+def run_of(claim: Part, recorded: Recording, head: Part, first: int, *, apart: bool) -> Run:
     """The run of a property. With `apart`, what begins with the session has an instant of its own there."""
-    topics = topics_of(claim.atoms)
-    waits = any(is_waited_for(atom) for atom in claim.atoms)
-    begins = not waits and (apart or document.rate is not None)
-    instants = Instants(recorded, topics, document.rate, first if begins else None)
-    values = Values(instants)
-    letters, begun, valid = (np.zeros(instants.count, np.int64), *np.ones((2, instants.count), bool))
-    news = messages = 0
-    stepped = np.zeros(instants.count, bool)
+    atoms, rate = claim.atoms, Fraction(head.one("rate")) if head.one("rate") else None
+    begins = not is_waited_for(atoms) and (apart or rate is not None)
+    instants = Instants(recorded, topics_of(atoms), rate, first if begins else None)
+    values, count = Values(instants), instants.count
+    letters, begun, valid = np.zeros(count, np.int64), np.ones(count, bool), np.ones(count, bool)
+    stepped = np.full(count, rate is not None)
+    stepped[:1] |= begins
+    news, messages = 0, {}
     with np.errstate(all="ignore"):
-        for n, atom in enumerate(claim.atoms):
+        for n, atom in enumerate(atoms):
             letters |= values.predicate(atom).astype(np.int64) << n
             begun &= values.known(atom)
             valid &= ~values.invalid(atom)
             stepped |= values.fresh(atom)
             of = atom["left"] if atom["op"] == "true" and isinstance(atom["left"], dict) else {}
             news |= ("new" in of or "message" in of) << n
-            messages |= ("message" in of) << n
-    if begins or document.rate is not None:
-        stepped[:] = True if document.rate is not None else stepped | (np.arange(instants.count) == 0)
+            if "message" in of:
+                messages[1 << n] = of["message"]
     steps = np.flatnonzero(stepped & begun & valid)
-    return with_messages(claim, instants, values, letters, steps, news, messages, first)
+    return with_messages(Run(instants.times[steps], letters[steps], first, news), steps, instants, messages)
 
 
-def with_messages(
-    claim: Claim, instants: Instants, values: Values, letters: np.ndarray, steps: np.ndarray, news: int, messages: int, first: int
-) -> Run:  # fmt: skip
-    """The steps, and between them the messages that make none, but from which ages count."""
-    heard = []
-    for n, atom in enumerate(claim.atoms):
-        if messages >> n & 1:
-            for name in atom["left"]["message"]:
-                topic, at = instants.topics[name], instants.at(name)
-                heard += [
-                    (t, p, 1 << n, int(a)) for t, p, a in zip(topic.times, topic.places, at.tolist(), strict=True)
-                ]
-    times, found = instants.times[steps], letters[steps]
+def with_messages(run: Run, steps: Array, instants: Instants, messages: dict[int, list[str]]) -> Run:
+    """The steps, and between them the messages that make none, but from which ages count; of each the bit."""
     if not len(steps):
-        return Run(times, found, first, news)
-    is_step = set(times.tolist()) if instants.is_ticks else set(steps.tolist())
+        return run
+    is_step = set(run.times.tolist() if instants.is_ticks else steps.tolist())
     others: dict[tuple[int, int], int] = {}
-    for time, place, bit, at in heard:
-        if (time if instants.is_ticks else at) not in is_step:
-            others[time, place] = others.get((time, place), 0) | bit
-    before: dict[int, int] = {}
-    more: list[tuple[int, int, int]] = []
+    for bit, name in ((bit, name) for bit, names in messages.items() for name in names):
+        topic = instants.topics[name]
+        for time, place, at in zip(topic.times, topic.places, instants.at(name).tolist(), strict=True):
+            if (time if instants.is_ticks else at) not in is_step:
+                others[time, place] = others.get((time, place), 0) | bit
+    heard: dict[int, int | None] = {bit: None for bit in messages if not int(run.letters[0]) & bit}
+    more = []
     for (time, place), bits in sorted(others.items()):
-        at = times.searchsorted(time, "right") if instants.is_ticks else steps.searchsorted(instants.places[place])
-        if at:
-            more.append((int(at), time, (int(found[at - 1]) & ~news) | bits))
+        if instants.is_ticks:
+            at = int(run.times.searchsorted(time, "right"))
         else:
-            before |= {n: time for n in range(len(claim.atoms)) if bits >> n & 1}
-    ages = {before.get(n) for n in range(len(claim.atoms)) if messages >> n & 1 and not int(found[0]) >> n & 1}
-    if len(ages) > 1:
+            at = int(steps.searchsorted(instants.places[place]))
+        if at:
+            more.append((at, time, (int(run.letters[at - 1]) & ~run.news) | bits))
+        else:
+            heard |= {bit: time for bit in heard if bit & bits}
+    if len({*heard.values()}) > 1:
         raise NotCovered("its ages count from different messages before its first step")
-    session = next(iter(ages), None)
-    if more:
-        at = [at for at, _, _ in more]
-        times, found = np.insert(times, at, [t for _, t, _ in more]), np.insert(found, at, [b for _, _, b in more])
-    return Run(times, found, first if session is None else session, news)
+    ages = [time for time in heard.values() if time is not None]
+    where, times, letters = zip(*more, strict=True) if more else ((), (), ())
+    return Run(
+        np.insert(run.times, where, times), np.insert(run.letters, where, letters), (ages or [run.session])[0], run.news
+    )
 
 
 def is_waited_for(x: Json) -> bool:
     """Whether something is read that has a first value, and nothing instead of it."""
-    if isinstance(x, list):
-        return any(map(is_waited_for, x))
-    if not isinstance(x, dict) or "instead" in x:
-        return False
-    return "path" in x or any(map(is_waited_for, x.values()))
+    if isinstance(x, dict) and "instead" not in x:
+        return "path" in x or any(map(is_waited_for, x.values()))
+    return isinstance(x, list) and any(map(is_waited_for, x))
 
 
-def lines_of(run: Run, until: int) -> tuple[np.ndarray, np.ndarray]:
+def lines_of(run: Run, until: int) -> tuple[Array, Array]:
     """The instants that have a line: the first, a letter that is not the one held, a time that is that of the last."""
     end = int(run.times.searchsorted(until, "right"))
     times, letters = run.times[:end], run.letters[:end]
@@ -1172,9 +1148,14 @@ def lines_of(run: Run, until: int) -> tuple[np.ndarray, np.ndarray]:
     return times[differs], letters[differs]
 
 
-def text_of(times: np.ndarray, letters: np.ndarray) -> Iterator[str]:
+def word_of(letter: int) -> str:
+    """A letter as it is written."""
+    return "".join(f" a{n}" for n in range(63) if letter >> n & 1)
+
+
+def text_of(times: Array, letters: Array) -> Iterator[str]:
     """The lines as they are written."""
-    words = {each: "".join(f" a{n}" for n in range(63) if each >> n & 1) for each in set(letters.tolist())}
+    words = {each: word_of(each) for each in set(letters.tolist())}
     for n in range(0, len(times), PIECE):
         gaps = np.diff(times[n : n + PIECE], prepend=times[max(n - 1, 0)]).tolist()
         some = zip(gaps, letters[n : n + PIECE].tolist(), strict=True)
@@ -1182,7 +1163,8 @@ def text_of(times: np.ndarray, letters: np.ndarray) -> Iterator[str]:
         yield text if n else f"at {times[0]}{text[2:]}"
 
 
-def summed(times: np.ndarray, letters: np.ndarray) -> str:
+def summed(times: Array, letters: Array) -> str:
+    """What stands in the place of many lines."""
     digest = hashlib.sha256()
     for text in text_of(times, letters):
         digest.update(text.encode())
@@ -1192,94 +1174,94 @@ def summed(times: np.ndarray, letters: np.ndarray) -> str:
 # The comparison ------------------------------------------------------------------------------------------------------
 
 
-def check_claim(claim: Claim, recorded: Recording, document: Document, ends: int) -> str:
-    """What was found; raises Refused for what is not as written. The run ends at `ends` at the latest."""
-    if recorded.first is None or recorded.last is None:
-        raise Refused("the recording has no messages")
-    is_decided = claim.verdict in ("violated", "satisfied")
-    if claim.decided != claim.until or (claim.until > ends if is_decided else claim.until != ends):
+def check_document(document: Document, path: Path, say: Callable[[str], None]) -> int:
+    """Check all claims; the exit code."""
+    for label, _, reason in (each.partition(": ") for each in document.not_covered):
+        say(f"{label}: nothing is claimed: {reason}")
+    head, codes = document.head, [0]
+    try:
+        if not document.claims:
+            return 0
+        if ("stamp" in head.said or "timeout" in head.said) and document.not_covered:
+            raise Refused("something is claimed of some properties only, though the run depends on all")
+        recorded = read(path, document)
+        if recorded.first is None or recorded.last is None:
+            raise Refused("the recording has no messages")
+        ends = end_of(document, recorded, recorded.first, recorded.last)
+    except (NotCovered, Refused) as error:
+        say(f"{error.__class__.__name__.upper()}: {error}")
+        return 1 if isinstance(error, Refused) else 2
+    for claim in document.claims:
+        label = claim.one("property")
+        try:
+            run = check_claim(claim, recorded, head, recorded.first, ends)
+            assert claim.found is not None
+            say(f"{label}: {len(run.times)} instants have the letters of {len(claim.found[0])} lines")
+        except NotCovered as error:
+            say(f"{label}: NOT COVERED: {error}")
+            codes.append(2)
+        except Refused as error:
+            say(f"{label}: REFUSED: {error}")
+            codes.append(1)
+    return 1 if 1 in codes else max(codes)
+
+
+def end_of(document: Document, recorded: Recording, first: int, last: int) -> int:
+    """When the run ends: with the recording, or so long after the first step of a property."""
+    timeout = document.head.time("timeout")
+    if timeout is None:
+        return last
+    runs = [run_of(claim, recorded, document.head, first, apart=True) for claim in document.claims]
+    return min([last, *(int(run.times[0]) + timeout for run in runs if len(run.times))])
+
+
+def check_claim(claim: Part, recorded: Recording, head: Part, first: int, ends: int) -> Run:
+    """The run that is as claimed, which ends at `ends` at the latest; raises Refused if there is none."""
+    verdict, _, decided = claim.one("verdict").partition(" ")
+    until = number(claim.one("until"))
+    is_decided = verdict in ("violated", "satisfied")
+    if decided != str(until) or (until > ends if is_decided else until != ends):
         raise Refused(f"the run ends at {ends}")
     problem = ""
+    # Where a message has the time at which the session begins, that may have an instant of its own, or not.
     for apart in (True, False):
-        run = run_of(claim, recorded, document, recorded.first, apart=apart)
-        problem = problem_with(claim, run)
-        if not problem:
-            return f"{len(run.times)} instants have the letters of {len(claim.found[0])} lines"
-        if claim.atoms and any(is_waited_for(atom) for atom in claim.atoms):
+        run = run_of(claim, recorded, head, first, apart=apart)
+        times, letters = lines_of(run, until)
+        problem = problem or problem_with(claim, run, times, letters)
+        if not problem_with(claim, run, times, letters):
+            claim.found = times, letters
+            return run
+        if is_waited_for(claim.atoms):
             break
     raise Refused(problem)
 
 
-def problem_with(claim: Claim, run: Run) -> str:
+def problem_with(claim: Part, run: Run, times: Array, letters: Array) -> str:
     """What is not as claimed, in words; nothing if all is."""
-    times, letters = lines_of(run, claim.until)
-    if claim.session != run.session:
+    if claim.time("session") != run.session:
         return f"ages count from {run.session}"
-    if (claim.verdict == "not_started") != (len(times) == 0):
+    if claim.one("verdict").startswith("not_started ") != (len(times) == 0):
         return "it has started" if len(times) else "it has not started"
-    if claim.summed:
-        if claim.summed != summed(times, letters):
-            return f"the letters are {summed(times, letters)}"
-    elif claim.lines != list(zip(times.tolist(), letters.tolist(), strict=True)):
-        pairs = zip(claim.lines, times.tolist(), letters.tolist(), strict=False)
-        same = next(
-            (n for n, (line, *here) in enumerate(pairs) if line != tuple(here)), min(len(claim.lines), len(times))
-        )
-        if same == len(times):
-            return f"there is no line {same + 1}"
-        held = "".join(f" a{n}" for n in range(63) if int(letters[same]) >> n & 1)
-        return f"line {same + 1} is at {times[same]}{held}"
-    claim.found = times, letters
-    return ""
-
-
-def check_document(document: Document, path: Path, say: Callable[[str], None]) -> int:
-    """Check all claims; the exit code."""
-    for label in document.not_covered:
-        say(f"{label.partition(':')[0]}: nothing is claimed:{label.partition(':')[2]}")
-    try:
-        if not document.claims:
-            return 0
-        if (document.by_header or document.timeout is not None) and document.not_covered:
-            raise Refused("something is claimed of some properties only, though the run depends on all")
-        recorded = read(path, document)
-        ends = end_of(recorded, document)
-    except NotCovered as error:
-        say(f"NOT COVERED: {error}")
-        return 2
-    except Refused as error:
-        say(f"REFUSED: {error}")
-        return 1
-    code = 0
-    for claim in document.claims:
-        try:
-            say(f"{claim.label}: {check_claim(claim, recorded, document, ends)}")
-        except NotCovered as error:
-            say(f"{claim.label}: NOT COVERED: {error}")
-            code = code or 2
-        except Refused as error:
-            say(f"{claim.label}: REFUSED: {error}")
-            code = 1
-    return code
-
-
-def end_of(recorded: Recording, document: Document) -> int:
-    """When the run ends: with the recording, or so long after the first step of a property."""
-    last = recorded.last if recorded.last is not None else 0
-    if document.timeout is None or recorded.first is None:
-        return last
-    runs = [run_of(claim, recorded, document, recorded.first, apart=True) for claim in document.claims]
-    return min([last, *(int(run.times[0]) + document.timeout for run in runs if len(run.times))])
+    if "letters" in claim.said:
+        found = summed(times, letters)
+        return "" if claim.one("letters") == found and not claim.lines else f"the letters are {found}"
+    found_lines = list(zip(times.tolist(), letters.tolist(), strict=True))
+    if claim.lines == found_lines:
+        return ""
+    pairs = enumerate(zip(claim.lines, found_lines, strict=False))
+    same = next((n for n, (one, other) in pairs if one != other), min(len(claim.lines), len(times)))
+    if same == len(times):
+        return f"there is no line {same + 1}"
+    return f"line {same + 1} is at {times[same]}{word_of(int(letters[same]))}"
 
 
 def filled(document: Document) -> Iterator[str]:
     """The document with the lines that were computed in place of their digests."""
-    body, claims = hashlib.sha256(), iter(document.claims)
-    current: Claim | None = None
+    body, claims, current = hashlib.sha256(), iter(document.claims), document.head
     for row in document.rows:
         current = next(claims) if row.startswith("property ") else current
-        found = current.found if current is not None and row.startswith("letters ") else None
-        for text in text_of(*found) if found is not None else [f"{row}\n"]:
+        has_lines = current.found is not None and row.startswith("letters ")
+        for text in text_of(*current.found) if has_lines and current.found else [f"{row}\n"]:
             body.update(text.encode())
             yield text
     yield f"end sha256 {body.hexdigest()}\n"
@@ -1293,7 +1275,7 @@ def main(arguments: list[str]) -> int:
         fill = Path(arguments[at + 1])
         arguments = arguments[:at] + arguments[at + 2 :]
     if len(arguments) < 2:
-        print("\n".join(__doc__.split("\n")[2:5]).strip(), file=sys.stderr)
+        print(str(__doc__).split("\n")[2].strip(), file=sys.stderr)
         return 2
     try:
         return check(Path(arguments[0]), [Path(each) for each in arguments[1:]], fill)
@@ -1312,13 +1294,16 @@ def check(evidence: Path, others: list[Path], fill: Path | None) -> int:
     recordings = {path: told(path) for path in others if path not in certificates}
     codes = [0]
     for document in found:
-        if any(sha256(path) != document.certificates for path in certificates):
+        if any({"": sha256(path)} != document.head.digests("certificates") for path in certificates):
             raise Refused("these are not the certificates")
-        path = next((path for path, files in recordings.items() if files == document.files), None)
+        wanted = document.head.digests("recording")
+        path = next((path for path, files in recordings.items() if files == wanted), None)
         if len(found) > 1:
-            print(f"recording {', '.join(document.files)}")
+            print(f"recording {', '.join(wanted)}")
         if path is None:
-            print(f"REFUSED: {missing(document, recordings)}")
+            others_of = (files for files in recordings.values() if files.keys() == wanted.keys())
+            other = next((name for files in others_of for name in files if files[name] != wanted[name]), None)
+            print(f"REFUSED: {other} bytes: another SHA-256" if other else f"REFUSED: no files {', '.join(wanted)}")
             codes.append(1)
             continue
         codes.append(check_document(document, path, print))
@@ -1335,15 +1320,6 @@ def is_certificates(path: Path) -> bool:
         return False
     with path.open("rb") as file:
         return file.read(17) == b"ltlc-certificate "
-
-
-def missing(document: Document, recordings: dict[Path, dict[str, tuple[int, str]]]) -> str:
-    """Which file of a recording is another one, or is not there."""
-    for files in recordings.values():
-        if files.keys() == document.files.keys():
-            [name, *_] = (name for name, of in files.items() if of != document.files[name])
-            return f"{name} is another file: its SHA-256 is {files[name][1]}"
-    return f"no recording with the files {', '.join(document.files)}"
 
 
 if __name__ == "__main__":
