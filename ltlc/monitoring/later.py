@@ -16,6 +16,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ltlc.compiler import Compiled
+from ltlc.monitoring.letters import Letters
 from ltlc.runtime.courses import Course
 from ltlc.runtime.episodes import Episodes
 from ltlc.runtime.properties import Failure, Moment, Monitor, MonitoredProperty
@@ -188,12 +189,22 @@ def _moment(failure: Failure) -> Moment:
 
 
 class JudgedTrack(RecordedTrack):
-    """A track of a recording: if the property `can_recur`, it has what is known `later` than its first violation."""
+    """A track of a recording: if the property `can_recur`, it has what is known `later` than its first violation.
 
-    __slots__ = ("can_recur", "later")
+    Its `letters` are kept if they are wanted.
+    """
 
-    def __init__(self, property_: MonitoredProperty, keep: bool, observer: Observer | None, can_recur: bool) -> None:
-        self.can_recur = can_recur
+    __slots__ = ("can_recur", "later", "letters")
+
+    def __init__(
+        self,
+        property_: MonitoredProperty,
+        keep: bool,
+        observer: Observer | None,
+        can_recur: bool,
+        letters: Letters | None = None,
+    ) -> None:
+        self.can_recur, self.letters = can_recur, letters
         self.later: Later | None = None
         super().__init__(property_, keep, observer)
 
@@ -204,12 +215,14 @@ class JudgedTrack(RecordedTrack):
 
     def step(self, time: int, values: Sequence[Value]) -> Verdict | None:
         """Judge one more step, to whose time the property was held."""
-        later = self.later
+        later, steps = self.later, self.steps
         if later is not None:
             later.step(time, values)
         previous = super().step(time, values)
         if later is not None:
             self.is_settled &= later.is_settled
+        if self.letters is not None:
+            self.letters.step(time, self.property.given(values) if self.steps > steps else None)
         return previous
 
     def hold(self, time: int) -> list[Any]:
@@ -222,6 +235,8 @@ class JudgedTrack(RecordedTrack):
     def hear(self, time: int, signals: Container[str]) -> None:
         """Messages come: the ages of these signals count anew, whatever the values."""
         super().hear(time, signals)
+        if self.letters is not None:
+            self.letters.hear(time, signals)
         if self.later is not None:
             self.later.hear(time, signals)
 
@@ -240,6 +255,12 @@ class JudgedTrack(RecordedTrack):
         return previous
 
 
+def letters_of(track: Track) -> Letters | None:
+    """Where the letters of a property are kept, as long as more can come."""
+    letters = track.letters if isinstance(track, JudgedTrack) else None
+    return None if letters is None or letters.is_settled else letters
+
+
 def later_of(track: Track) -> Later | None:
     """What goes on after the first violation of a property, as long as more can come."""
     later = track.later if isinstance(track, JudgedTrack) else None
@@ -248,7 +269,7 @@ def later_of(track: Track) -> Later | None:
 
 def is_followed(track: Track) -> bool:
     """Whether more steps of a property matter."""
-    return track.decided_at is None or later_of(track) is not None
+    return track.decided_at is None or later_of(track) is not None or letters_of(track) is not None
 
 
 def all_violations(track: Track) -> list[Violation] | None:

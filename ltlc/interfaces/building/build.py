@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
+from ltlc.assurance.evidence.certified import entry_of
 from ltlc.assurance.gate import Judgement, judge_all
 from ltlc.assurance.messages import Messages
 from ltlc.assurance.pairs import followed
@@ -14,12 +15,9 @@ from ltlc.compiler import Compiled
 from ltlc.frontend.language import types_for
 from ltlc.interfaces.building.targets import Made, Target
 from ltlc.interfaces.building.wording import GATE_MEMORY, GATE_SECONDS, failures, summary
-from ltlc.runtime.properties import stated
-from ltlc.runtime.reports import printable
 from ltlc.semantics.certificate import Certificate
 from ltlc.semantics.certificate_reader import UnreadableError, parse
-from ltlc.semantics.certificate_text import Entry, to_text
-from ltlc.semantics.intervals import without_intervals
+from ltlc.semantics.certificate_text import to_text
 from ltlc.specification.specification import Specification
 
 
@@ -53,7 +51,11 @@ class Built:
         Raises TooLargeError if others could not read them.
         """
         text = to_text(
-            _entry(compiled, judgement.certificate, with_programs)
+            entry_of(
+                compiled,
+                judgement.certificate,
+                followed(compiled, judgement.certificate.assumption) if with_programs else None,
+            )
             for compiled, judgement in zip(self.compiled, self.judgements, strict=True)
             if isinstance(judgement, Judgement) and isinstance(judgement.certificate, Certificate)
         )
@@ -62,15 +64,6 @@ class Built:
         except UnreadableError as error:
             raise TooLargeError(f"the certificates are too large for `ltlc certify`: {error.message}") from None
         return text
-
-
-def _entry(compiled: Compiled, certificate: Certificate, with_program: bool) -> Entry:
-    property_ = compiled.specification
-    program = followed(compiled, certificate.assumption) if with_program else None
-    said = without_intervals(property_.property)
-    document = {} if property_.requirement is None else property_.requirement.document()
-    remarks = tuple(f"{name}: {printable(value)}" for name, value in stated(document))
-    return Entry(property_.label, property_.line, said, compiled.encoding.name, certificate, program, remarks)
 
 
 def build(

@@ -16,6 +16,7 @@ from ltlc.base.files import refuse_unwritable, write_all
 from ltlc.interfaces.commands.common import UNUSABLE, overwritten, refused, report, unusable, unwritable
 from ltlc.interfaces.commands.page import Page
 from ltlc.interfaces.commands.progress import progress, saying
+from ltlc.monitoring.campaigns.bundle import Bundle, BundleError
 from ltlc.monitoring.campaigns.campaign import Workers, here, in_order, judge_all, on_this_machine
 from ltlc.monitoring.campaigns.engine import EngineError, on_engine
 from ltlc.monitoring.campaigns.forms import FORMS
@@ -34,13 +35,13 @@ def run_several(judge: Judge, found: Found, options: argparse.Namespace) -> int:
     if options.report and (options.results or options.engine):
         return unusable("--report cannot be combined with --results and --engine; omit these, or use --summary")
     try:
-        for path in filter(None, (options.results, options.summary)):
+        for path in filter(None, (options.results, options.summary, options.evidence)):
             refuse_unwritable(path)
     except OSError as error:
         return unwritable(path, error)
     if options.verdicts and options.results:
         return unusable("--verdicts cannot be kept in a table of results; omit one of the two")
-    if twice := overwritten((options.report, options.summary), [each.name for each in found.places]):
+    if twice := overwritten((options.report, options.summary, options.evidence), [each.name for each in found.places]):
         return refused(twice)
     report(found.problems)
     page = Page(judge, options, len(found.places)) if options.report else None
@@ -49,6 +50,8 @@ def run_several(judge: Judge, found: Found, options: argparse.Namespace) -> int:
     except (EngineError, ResultsError) as error:
         report([error.diagnostic])
         return UNUSABLE
+    except BundleError as error:
+        return unwritable(options.evidence, error.error)
     written: dict[Path, bytes | str] = {}
     if options.summary:
         from ltlc.analysis.english import English
@@ -75,9 +78,15 @@ def _judge(judge: Judge, found: Found, options: argparse.Namespace, page: Page |
     report(judge.remarks)
     numbers = {place.name: number for number, place in enumerate(found.places)}
     with ExitStack() as open_:
-        results = None
+        bundle, results = None, None
+        if judge.evidence is not None:
+            bundle = open_.enter_context(Bundle(options.evidence, judge.evidence))
         if options.results:
-            results = open_.enter_context(Results(options.results, _digest(judge, options), found.places))
+            # What there is no evidence of is judged again, as if it had changed.
+            places = [
+                each if bundle is None or bundle.has(each) else replace(each, version="") for each in found.places
+            ]
+            results = open_.enter_context(Results(options.results, _digest(judge, options), places))
         kept = results.names() if results else set()
         earlier = results.kept() if results else ()
         waiting = [place for place in found.places if place.name not in kept]
@@ -87,7 +96,14 @@ def _judge(judge: Judge, found: Found, options: argparse.Namespace, page: Page |
             tally.add(outcome, is_kept=outcome.place.name in kept)
             remarks.add(outcome.diagnostics)
             sys.stdout.write(form.add(outcome))
+            if bundle is not None and outcome.place.name in kept:
+                bundle.keep(outcome.place)
+            elif bundle is not None:
+                bundle.add(outcome.place, outcome.evidence)
     remarks.tell(len(found.places))
+    if bundle is not None and bundle.lacking:
+        names = ", ".join(bundle.lacking)
+        print(f"ltlc: no evidence of what could not be judged to its end: {names}", file=sys.stderr)
     sys.stdout.write(form.end(tally, found))
     return tally
 

@@ -9,6 +9,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from time import perf_counter_ns
 
+from ltlc.assurance.evidence.document import printed
+from ltlc.automata import Budget
 from ltlc.base.files import refuse_unwritable, write_all
 from ltlc.inputs.recordings import Block
 from ltlc.interfaces.commands import arguments
@@ -48,6 +50,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="FILE.mcap",
         help="write the verdicts as topics with the times of the recording, for Foxglove and PlotJuggler",
     )
+    parser.add_argument(
+        "--evidence",
+        type=Path,
+        metavar="FILE",
+        help="write what the verdicts follow from, to be checked by `ltlc certify --evidence`; of several recordings, "
+        "with --results, what is missing is appended",
+    )
     add_watch(parser)
 
 
@@ -73,7 +82,7 @@ def _add_campaign(group: argparse._ArgumentGroup) -> None:
 def run(options: argparse.Namespace) -> int:
     """Judge once, or whenever a file changes; the exit code."""
     if options.watch:
-        outputs = (options.report, options.output, options.summary, options.results)
+        outputs = (options.report, options.output, options.summary, options.results, options.evidence)
         read = [options.specification, *options.recordings, *options.msg_path]
         return watched(_run, options, read, [each for each in outputs if each])
     return _run(options)
@@ -85,11 +94,11 @@ def _run(options: argparse.Namespace) -> int:
 
     if options.output:
         from ltlc.monitoring.judging import output  # noqa: F401  what it needs may not be installed
-    outputs = (options.report, options.output, options.summary)
+    outputs = (options.report, options.output, options.summary, options.evidence)
     named = [each for each in options.recordings if is_one([each])]
     if twice := overwritten(outputs, [options.specification, *named]):
         return refused(twice)
-    for path in filter(None, (options.report, options.output)):
+    for path in filter(None, (options.report, options.output, options.evidence)):
         try:
             refuse_unwritable(path)
         except OSError as error:
@@ -103,6 +112,13 @@ def _run(options: argparse.Namespace) -> int:
     if isinstance(prepared, int):
         return prepared
     keep_trails = bool(options.report or options.output)
+    evidence = None
+    if options.evidence:
+        from ltlc.monitoring.judging.evidence import evidence_by
+
+        with saying("making certificates", options.quiet):
+            budget = Budget(*options.budget)
+            evidence = evidence_by(prepared.compiled, prepared.specification, budget)
     judge = Judge(
         prepared.compiled,
         prepared.specification,
@@ -111,6 +127,7 @@ def _run(options: argparse.Namespace) -> int:
         keep_trails,
         remarks=prepared.late,
         hashed=options.format != "text" or options.results is not None,
+        evidence=evidence,
     )
     if found is not None:
         from ltlc.interfaces.commands.campaign import run_several
@@ -146,6 +163,10 @@ def _run_one(judge: Judge, path: Path, options: argparse.Namespace) -> int:
                 written[options.output] = verdicts_mcap(found)
         except NotWritableError as error:
             return unusable(f"{options.output} is not written: {error}")
+    if options.evidence:
+        if found.evidence is None:
+            return unusable(f"{options.evidence} is not written: not all of the recording could be judged")
+        written[options.evidence] = printed(found.evidence).encode()
     return _write(written, options.quiet) or found.exit_code
 
 

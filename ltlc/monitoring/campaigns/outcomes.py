@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
+from ltlc.assurance.evidence.document import printed
 from ltlc.base.codes import diagnostic
 from ltlc.base.diagnostics import Diagnostic
 from ltlc.base.source import Source
@@ -39,7 +40,8 @@ class Outcome:
     """What the recording at `place` has shown.
 
     `report` is its JSON document, in which `properties` is null if nothing could be judged, and otherwise empty.
-    `remarks` are lines about the whole recording; `diagnostics` are to be told, and are not kept in tables.
+    `remarks` are lines about the whole recording; `diagnostics` are to be told, and are not kept in tables, nor is the
+    `evidence`, which is empty if there is none.
     It took `seconds`, and as many `tries`.
     """
 
@@ -50,6 +52,7 @@ class Outcome:
     diagnostics: tuple[Diagnostic, ...] = ()
     seconds: float = 0.0
     tries: int = 1
+    evidence: str = ""
 
     @property
     def is_judged(self) -> bool:
@@ -98,7 +101,8 @@ def of_report(place: Location, found: RunReport, seconds: float) -> Outcome:
     if found.session is not None:
         document["properties"] = []
     diagnostics = tuple(_renamed(each, found.recording, place.name) for each in found.diagnostics)
-    return Outcome(place, document, properties, remarks, diagnostics, seconds)
+    evidence = "" if found.evidence is None else printed(found.evidence)
+    return Outcome(place, document, properties, remarks, diagnostics, seconds, evidence=evidence)
 
 
 def _renamed(told: Diagnostic, name: str, to: str) -> Diagnostic:

@@ -10,6 +10,7 @@ import numpy as np
 
 from ltlc.inputs.recordings.blocks import Block, Ragged
 from ltlc.monitoring.columns.atoms import Compared, prepare
+from ltlc.monitoring.columns.bits import unpack
 from ltlc.monitoring.columns.derived import derive
 from ltlc.monitoring.columns.leaps import walk_and_leap
 from ltlc.monitoring.columns.others import Others
@@ -19,7 +20,7 @@ from ltlc.monitoring.columns.slices import BySlices, refusal
 from ltlc.monitoring.columns.ticks import MOST, Seen, block_of, times_of
 from ltlc.monitoring.columns.tracks import Forward, Stretch, count_invalid, has_ages, stretch, take_together
 from ltlc.monitoring.columns.walk import hear, walk, walk_on
-from ltlc.monitoring.later import is_followed, later_of
+from ltlc.monitoring.later import is_followed, later_of, letters_of
 from ltlc.runtime.properties import MonitoredProperty
 from ltlc.runtime.rows import ByRows
 from ltlc.runtime.sampling import Derived, Reading, Window
@@ -288,6 +289,8 @@ class ByBlocks:
         hear(way.track, steps)
         self._skip(way, steps, rows)
         count_invalid(way.track, found)
+        if (letters := letters_of(way.track)) is not None:
+            letters.take(found.times, [unpack(bits, len(found)) for bits in found.atoms])
         way.nanoseconds += perf_counter_ns() - start
         return found
 

@@ -10,6 +10,7 @@ from pathlib import Path
 from time import perf_counter_ns
 from typing import Any
 
+from ltlc.assurance.evidence.document import Document
 from ltlc.backends.python.load import load_plan
 from ltlc.base.codes import diagnostic
 from ltlc.base.diagnostics import Diagnostic, Severity
@@ -25,9 +26,10 @@ from ltlc.inputs.recordings.rows import failure
 from ltlc.inputs.recordings.trails import Trail, Trailing
 from ltlc.monitoring.columns.prepared import Prepared, prepare_all
 from ltlc.monitoring.columns.session import ByBlocks
+from ltlc.monitoring.judging.evidence import Digests, Evidence, Judged, not_covered
 from ltlc.monitoring.judging.part import Part
 from ltlc.monitoring.judging.violations import violations_report, violations_text
-from ltlc.monitoring.later import JudgedTrack, can_recur
+from ltlc.monitoring.later import JudgedTrack, can_recur, letters_of
 from ltlc.runtime import documents, junit, reports, sampling
 from ltlc.runtime.properties import MonitoredProperty
 from ltlc.runtime.rows import ByRows
@@ -51,6 +53,7 @@ class RunReport:
     `trails`, one for each property, if they were asked for. `reading` and `judging` took so long. `definitions` say by
     topic who defines its messages. `blocks` judged the session, if anything could be read. The `specification` is what
     was judged by. The recording is what is in the `file`, if it is in one; its SHA-256 is taken for a document.
+    There is `evidence` if it was asked for and all could be read.
     """
 
     recording: str
@@ -64,6 +67,7 @@ class RunReport:
     blocks: ByBlocks | None = None
     specification: Source | None = None
     file: Path | None = None
+    evidence: Document | None = None
 
     @property
     def exit_code(self) -> int:
@@ -180,6 +184,7 @@ class Judge:
     Rows are taken from the time `reading.since` on, up to and including `reading.until`. `remarks` are on the monitors,
     and stand in each report before those on the recording. It `finds_all` violations of a property, or the first one.
     The documents of its reports have the SHA-256 of the recording if it is `hashed`, which takes a moment.
+    With `evidence` a report has that of its recording.
     """
 
     compiled: Sequence[Compiled]
@@ -191,6 +196,7 @@ class Judge:
     remarks: tuple[Diagnostic, ...] = ()
     finds_all: bool = True
     hashed: bool = True
+    evidence: Evidence | None = None
 
     def judge(self, path: Path, watchers: Sequence[Watcher] = ()) -> RunReport:
         """What the recording at `path` shows. `watchers` are told what was judged, block by block."""
@@ -203,6 +209,7 @@ class Judge:
         session = Session(plan, self.keep_verdicts, observe, self._track)
         absent = (name for name in readings(plan) if name not in recording.columns)
         session.absences = {name: recording.absence(name) for name in absent}
+        digests = None if self.evidence is None else Digests(path)
         blocks, watch, start = ByBlocks(session, self.prepared), Stopwatch(), perf_counter_ns()
         damage, part = None, Part(path, recording, self.reading)
         try:
@@ -216,6 +223,10 @@ class Judge:
         if damage is not None:
             found.append(damage)
         judged = None if damage is not None and session.time is None else blocks
+        evidence = None
+        if self.evidence is not None and digests is not None and damage is None:
+            evidence = Judged(session, part, recording, self.reading).document(self.evidence, digests.files())
+            found += not_covered(evidence, self.specification.source, self._properties)
         return RunReport(
             str(path),
             None if judged is None else judged.session,
@@ -225,6 +236,7 @@ class Judge:
             *times,
             recording.definitions,
             judged,
+            evidence=evidence,
             **self._made_of(path),
         )
 
@@ -248,7 +260,8 @@ class Judge:
         return prepare_all(self.compiled, self.specification.source)
 
     def _track(self, property_: MonitoredProperty, keep: bool, observer: Observer | None) -> Track:
-        return JudgedTrack(property_, keep, observer, property_.label in self._recurring)
+        letters = None if self.evidence is None else self.evidence.letters(property_.label)
+        return JudgedTrack(property_, keep, observer, property_.label in self._recurring, letters)
 
     @cached_property
     def _recurring(self) -> frozenset[str]:
@@ -303,6 +316,7 @@ class Judge:
                 first = block.times[0] if session.time is None else session.time
                 _check_steps(session, int(block.times[-1] - first), path)
             by_blocks.take(block)
+            _settle(session)
             for watcher in watchers:
                 watcher(block)
             if session.is_over:
@@ -312,6 +326,14 @@ class Judge:
             ByRows(by_blocks.session).advance(end)
             for track in session.tracks:
                 track.hold(min(end, session.end))
+        _settle(session, is_over=True)
+
+
+def _settle(session: Session, *, is_over: bool = False) -> None:
+    """The letters of properties that are decided end there."""
+    for track in session.tracks:
+        if (letters := letters_of(track)) is not None:
+            letters.settle(None if track.decided_at is None else track.decided_at.time, is_over=is_over)
 
 
 MOST_VERDICTS = 10_000_000

@@ -12,6 +12,7 @@ import numpy as np
 from ltlc.base.codes import diagnostic
 from ltlc.base.diagnostics import Diagnostic
 from ltlc.base.source import Source
+from ltlc.inputs.messages.definitions import MessageTypes
 from ltlc.inputs.recordings.bags.compressed import portions
 from ltlc.inputs.recordings.bags.definitions import GIVEN, RECORDING, NonsenseError, distribution_name
 from ltlc.inputs.recordings.bags.folders import bag_at, is_bag, is_packed, opened
@@ -87,6 +88,11 @@ class BagRecording:
     def definitions(self) -> Mapping[str, str]:
         """Who defines the messages on each topic that is read."""
         return {topic: ", ".join(reader.defined.origins) for topic, reader in self._plan.readers.items()}
+
+    @property
+    def types(self) -> list[tuple[str, MessageTypes]]:
+        """What is read is messages of these types, each with the definitions of all that is in it."""
+        return [(reader.message, reader.defined.types) for reader in self._plan.readers.values()]
 
     @property
     def beginning(self) -> Nanoseconds | None:

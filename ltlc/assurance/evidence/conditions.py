@@ -1,0 +1,231 @@
+"""The atoms of a property as JSON: all that has to be known to compute them from a recording, down to the fields.
+
+This is one side of the seam: `recorded.py`, which shares nothing with it, computes what is written here, and
+`seam.py` compares it with what a specification says. `docs/evidence.md` describes the form.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Mapping
+from typing import NamedTuple, assert_never
+
+from ltlc.assurance.evidence.document import StatedAtom
+from ltlc.program.excused import excused
+from ltlc.program.machine import Instead
+from ltlc.semantics import ltl
+from ltlc.semantics.encodings import EPISODE, Encoding
+from ltlc.semantics.properties import predicates
+from ltlc.semantics.timed_atoms import Age, Late, News, Previously, atoms_within, duration_of, timed_atoms
+from ltlc.specification import expressions as e
+from ltlc.specification.specification import PropertySpecification, topics_of
+from ltlc.specification.wire import double_or_integer
+
+Json = object
+"""What JSON can say."""
+
+
+class NotCoveredError(Exception):
+    """Evidence cannot say this, for a reason."""
+
+
+class _Standing(NamedTuple):
+    """What an input is before it has a value, and the topics without whose news it is not read; none: until then."""
+
+    value: Instead
+    topics: tuple[str, ...]
+
+
+def stated_atoms(of: PropertySpecification, encoding: Encoding = EPISODE) -> tuple[StatedAtom, ...]:
+    """The atoms of a property with what they are. Raises NotCoveredError."""
+    if of.slicing is not None:
+        raise NotCoveredError("it is judged for each id or message")
+    if of.openings():
+        raise NotCoveredError("it reads values at openings")
+    if of.counts():
+        raise NotCoveredError("it counts how often something occurred")
+    if encoding is not EPISODE:
+        raise NotCoveredError(f"verdicts under the encoding `{encoding.name}` are not proved")
+    if any(map(_changes_by_itself, _before(of))):
+        raise NotCoveredError("it asks what held a nanosecond ago of what changes while nothing happens")
+    if len(of.atoms) > MOST_ATOMS:
+        raise NotCoveredError(f"it has more than {MOST_ATOMS} atoms")
+    names = {each.input.signal: each for each in excused(of)}
+    standing = {
+        wanted: _Standing(each.instead, tuple(t for n in each.news for t in _topics(of, n.signal)))
+        for wanted in of.inputs()
+        if isinstance(wanted, e.Current) and (each := names.get(wanted.signal.name)) is not None
+    }
+    writer, messages = _Writer(standing), of.messages()
+    return tuple(
+        StatedAtom(a.name, _message(a.condition) if a.name in messages else writer.condition(a.condition))
+        for a in of.atoms
+    )
+
+
+def _before(of: PropertySpecification) -> Iterator[ltl.Formula]:
+    """What `previously` is asked of."""
+    atoms = (atom for part in predicates(of.property) for atom in atoms_within(part))
+    return (atom.operand for atom in atoms if isinstance(atom, Previously))
+
+
+def _changes_by_itself(formula: ltl.Formula) -> bool:
+    """Whether `formula` can change between two steps: by news that is over, by time, or by a nanosecond."""
+    return any(
+        isinstance(atom, News | Age | Late | Previously) or duration_of(atom) is not None
+        for atom in timed_atoms(formula)
+    )
+
+
+MOST_ATOMS = 62
+"""The letters of a property are bits of an integer."""
+
+
+def _topics(of: PropertySpecification, signal: str) -> tuple[str, ...]:
+    """The topics of the news of a signal that a property reads."""
+    [news] = {i.signal for i in of.inputs() if isinstance(i, e.New) and i.signal.name == signal}
+    return topics_of(news)
+
+
+def _message(condition: e.Condition) -> dict[str, object]:
+    match condition:
+        case e.IsTrue(e.New(signal)):
+            return {"op": "true", "left": {"message": sorted(topics_of(signal))}}
+        case _:
+            raise TypeError(f"not that a message comes: {condition}")
+
+
+class _Writer:
+    """Writes conditions and expressions; some inputs are something in place of a first value."""
+
+    def __init__(self, standing: Mapping[e.Current, _Standing]) -> None:
+        self._standing = standing
+
+    def condition(self, what: e.Condition) -> dict[str, object]:
+        """A condition."""
+        match what:
+            case e.Comparison(left, relation, right, margin):
+                said = {"op": relation.value, "left": self.expression(left), "right": self.expression(right)}
+                return said | {"margin": _number(margin)} if margin else said
+            case e.Same(left, right):
+                return {"op": "same", "left": self.expression(left), "right": self.expression(right)}
+            case e.IsTrue(operand):
+                return {"op": "true", "left": self.expression(operand)}
+
+    def expression(self, of: e.Expression) -> Json:
+        """An expression."""
+        match of:
+            case e.Number(value):
+                return _number(value)
+            case e.Boolean(value) | e.String(value):
+                return value
+            case e.Current(signal):
+                return self._current(of, signal)
+            case e.Past(signal, ago):
+                return self.expression(_definition(signal)) if signal.is_constant else {"ago": ago, **self._of(signal)}
+            case e.Recent(signal, ago):
+                return {"recent": ago, **self._of(signal)}
+            case e.Slope(signal):
+                return {"slope": True, **self._of(signal)}
+            case e.New(signal):
+                return {"new": sorted(topics_of(signal))}
+            case e.Opening():
+                raise NotCoveredError("it reads values at openings")
+            case e.Slice(array, start, stop):
+                return {"slice": [start, stop], "of": self.expression(array)}
+            case e.Element(array):
+                return {"element": self.expression(array)}
+            case e.Negative(operand):
+                return {"call": "neg", "of": [self.expression(operand)]}
+            case e.Arithmetic(operator, left, right):
+                return {"call": operator.value, "of": [self.expression(left), self.expression(right)]}
+            case e.Call(function, arguments):
+                return {"call": function.value, "of": [self.expression(each) for each in arguments]}
+            case e.Count(predicate, conditions, over):
+                said = {"count": self._predicate(predicate, dict(conditions))}
+                lists = [[self.expression(each.array) for each in elements] for elements in over]
+                return said | {"over": lists} if over else said
+            case e.When(predicate, conditions):
+                return {"predicate": self._predicate(predicate, dict(conditions))}
+            case _:
+                assert_never(of)
+
+    def _current(self, wanted: e.Current, signal: e.Signal) -> Json:
+        if (standing := self._standing.get(wanted)) is not None:
+            news = {"news": sorted(standing.topics)} if standing.topics else {}
+            return {"instead": _instead(standing.value), **news, "of": self._latest(signal)}
+        if signal.otherwise is not None:
+            raise NotCoveredError("it computes with a value that stands in for a sample")
+        return self._latest(signal)
+
+    def _latest(self, signal: e.Signal) -> Json:
+        """The latest sample; of what is computed from latest samples, and of all of them, that is computed anew."""
+        if isinstance(signal.definition, e.Field) or signal.when is not None:
+            return self._of(signal)["of"]
+        return self.expression(signal.definition)
+
+    def _of(self, signal: e.Signal) -> dict[str, object]:
+        """The samples of a signal."""
+        if isinstance(signal.definition, e.Field):
+            return {"of": _field(signal.definition)}
+        sampled: dict[str, object] = {"sampled": self.expression(signal.definition)}
+        if signal.when is not None:
+            sampled["when"] = self._predicate(signal.when.predicate, dict(signal.when.conditions))
+        return {"of": sampled}
+
+    def _predicate(self, formula: ltl.Formula, conditions: Mapping[str, e.Condition]) -> Json:
+        match formula:
+            case ltl.Truth():
+                return True
+            case ltl.Atom(name):
+                return self.condition(conditions[name])
+            case ltl.Not(operand):
+                return {"not": self._predicate(operand, conditions)}
+            case ltl.And(left, right):
+                return {"and": [self._predicate(each, conditions) for each in (left, right)]}
+            case ltl.Or(left, right):
+                return {"or": [self._predicate(each, conditions) for each in (left, right)]}
+            case _:
+                raise TypeError(f"not a state predicate: {formula}")
+
+
+def _definition(signal: e.Signal) -> e.Expression:
+    assert not isinstance(signal.definition, e.Field)
+    return signal.definition
+
+
+def _instead(value: Instead) -> Json:
+    if isinstance(value, tuple):
+        return [_instead(each) for each in value]
+    return value if isinstance(value, bool | str) else _number(value)
+
+
+def _number(value: float) -> Json:
+    """A number as JSON; one that JSON does not have, in words."""
+    exact = double_or_integer(value) if isinstance(value, int) else value
+    return exact if math.isfinite(exact) else {"number": repr(exact)}
+
+
+def _field(field: e.Field) -> dict[str, object]:
+    if any(isinstance(step, e.OfSlice) for step in field.path):
+        raise NotCoveredError("it is judged for each id or message")
+    return {"topic": field.topic, "type": field.message, "path": list(_path(field.path))}
+
+
+def _path(steps: Iterable[e.PathStep]) -> Iterator[Json]:
+    for step in steps:
+        match step:
+            case str() | int():
+                yield step
+            case e.Match(key, value):
+                yield ["match", key, value]
+            case e.Parallel(names, value):
+                yield ["parallel", names, value]
+            case e.Each():
+                yield ["each"]
+            case e.Bytes():
+                yield ["bytes"]
+            case e.OfSlice():
+                return
+            case _:
+                assert_never(step)

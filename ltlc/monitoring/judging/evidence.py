@@ -1,0 +1,194 @@
+"""Evidence of a recording: what is said of all recordings is prepared once, and the rest as each of them is judged."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path, PurePath
+
+from ltlc.assurance.evidence.conditions import NotCoveredError, stated_atoms
+from ltlc.assurance.evidence.definitions import digests
+from ltlc.assurance.evidence.document import Claim, Document, File, Head, NotCovered, StatedAtom, digest
+from ltlc.base.codes import diagnostic
+from ltlc.base.diagnostics import Diagnostic
+from ltlc.base.limits import Budget
+from ltlc.base.provenance import digest_of
+from ltlc.base.revision import version_text
+from ltlc.base.source import Source
+from ltlc.compiler import Compiled
+from ltlc.inputs.recordings import Recording
+from ltlc.inputs.recordings.bags import BagRecording
+from ltlc.inputs.recordings.bags.folders import METADATA, is_bag
+from ltlc.inputs.recordings.bags.plan import absolute
+from ltlc.inputs.recordings.reading import ReadOptions, Stamp
+from ltlc.monitoring.judging.part import Part
+from ltlc.monitoring.later import JudgedTrack
+from ltlc.monitoring.letters import Letters
+from ltlc.runtime.session import Session
+from ltlc.semantics.durations import Nanoseconds
+from ltlc.specification.specification import PropertySpecification, Specification, fields
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """What is said of every recording that is judged by `properties`: by their labels, their atoms or why not.
+
+    `version` is that of ltlc. `specification` is the name of the file and its digest, `certificates` a digest.
+    """
+
+    version: str
+    specification: tuple[str, str]
+    certificates: str
+    properties: Sequence[PropertySpecification]
+    stated: Mapping[str, tuple[StatedAtom, ...] | str]
+    rate: float | None
+    timeout: Nanoseconds | None
+
+    def letters(self, label: str) -> Letters | None:
+        """Where the letters of a property are kept in a run; None if nothing is claimed of it."""
+        [of] = (each for each in self.properties if each.label == label)
+        return None if isinstance(self.stated[label], str) else Letters(of, self.rate is not None)
+
+
+def evidence_by(compiled: Sequence[Compiled], specification: Specification, budget: Budget) -> Evidence:
+    """What evidence says of every recording; the certificate of each property may take that `budget`."""
+    from ltlc.assurance.evidence.certified import certificates  # which imports what makes certificates
+
+    text, reasons = certificates(compiled, budget)
+    stated: dict[str, tuple[StatedAtom, ...] | str] = {}
+    for each in compiled:
+        label = each.specification.label
+        try:
+            stated[label] = stated_atoms(each.specification, each.encoding)
+        except NotCoveredError as error:
+            stated[label] = str(error)
+        if label in reasons:
+            stated[label] = f"it has no certificate: {reasons[label]}"
+    return Evidence(
+        version_text(),
+        (PurePath(specification.source.name).name, specification.source.sha256),
+        digest(text),
+        tuple(each.specification for each in compiled),
+        stated,
+        specification.rate,
+        specification.timeout,
+    )
+
+
+class Digests:
+    """The digests of all files of a recording, which are computed while it is judged."""
+
+    def __init__(self, path: Path) -> None:
+        self._pool = ThreadPoolExecutor(1)
+        self._files: list[Future[File]] = [self._pool.submit(_file, name, at) for name, at in files_of(path)]
+        self._pool.shutdown(wait=False)
+
+    def files(self) -> tuple[File, ...]:
+        """The files, as soon as their digests are known. Raises OSError."""
+        return tuple(each.result() for each in self._files)
+
+
+def files_of(path: Path) -> list[tuple[str, Path]]:
+    """The files of a recording, by their names: itself, or of a folder all bags and what describes them."""
+    if not path.is_dir():
+        return [(path.name, path)]
+    folder = path.resolve().name
+    files = (each for each in path.iterdir() if each.is_file() and (is_bag(each) or each.name == METADATA))
+    return sorted((f"{folder}/{each.name}", each) for each in files)
+
+
+def _file(name: str, path: Path) -> File:
+    found = digest_of(path)
+    return File(name, found.bytes, found.sha256)
+
+
+@dataclass(frozen=True)
+class Judged:
+    """A run that has been judged, of a `part` of a recording, read with these options."""
+
+    session: Session
+    part: Part
+    recording: Recording
+    reading: ReadOptions
+
+    def document(self, evidence: Evidence, files: Iterable[File]) -> Document:
+        """The evidence of it."""
+        properties = tuple(self._properties(evidence))
+        head = Head(
+            evidence.version,
+            evidence.specification,
+            evidence.certificates,
+            tuple(files),
+            digests(self.recording.types) if isinstance(self.recording, BagRecording) else (),
+            None if evidence.rate is None else repr(evidence.rate),
+            evidence.timeout,
+            self.reading.stamp is Stamp.HEADER,
+            self.part.since,
+            self.part.until,
+        )
+        return Document(head, properties)
+
+    def _properties(self, evidence: Evidence) -> Iterator[Claim | NotCovered]:
+        found = [
+            self._claim(evidence, of, track) for of, track in zip(evidence.properties, self.session.tracks, strict=True)
+        ]
+        depends_on_all = evidence.timeout is not None or self.reading.stamp is Stamp.HEADER
+        if not depends_on_all or all(isinstance(each, Claim) for each in found):
+            yield from found
+            return
+        why = "when the run begins and ends depends on all properties, and one of these is not covered"
+        yield from (each if isinstance(each, NotCovered) else NotCovered(each.label, why) for each in found)
+
+    def _claim(self, evidence: Evidence, of: PropertySpecification, track: object) -> Claim | NotCovered:
+        stated = evidence.stated[of.label]
+        if isinstance(stated, str):
+            return NotCovered(of.label, stated)
+        if not isinstance(self.recording, BagRecording):
+            return NotCovered(of.label, "the recording is a table")
+        assert isinstance(track, JudgedTrack)
+        letters, began = track.letters, self.session.began
+        assert letters is not None
+        if began is None or self.session.time is None:
+            return NotCovered(of.label, "the recording has no messages")
+        if unread := self._unread(of):
+            return NotCovered(of.label, unread)
+        if letters.are_ages_apart:
+            return NotCovered(of.label, "its ages count from different messages before its first step")
+        if min(began, letters.first or 0) < 0:
+            return NotCovered(of.label, "the recording has times before 0")
+        end = self.session.time if self.part.until is None else self.part.until
+        decided = track.decided_at
+        until = min(end, self.session.end) if decided is None else decided.time
+        requirement = of.requirement
+        return Claim(
+            of.label,
+            of.text,
+            stated,
+            began if letters.session is None else letters.session,
+            letters.lines,
+            until,
+            track.verdict,
+            until,
+            None if requirement is None else requirement.id,
+            () if requirement is None else tuple(requirement.attributes.get("verifies", ())),
+        )
+
+    def _unread(self, of: PropertySpecification) -> str:
+        """Why something that a property reads is not read of a topic that the recording has; empty if all is."""
+        assert isinstance(self.recording, BagRecording)
+        topics = {absolute(name) for name in self.recording.topics}
+        for signal, field in (pair for each in of.signals() for pair in fields(each)):
+            if field.topic in topics and signal.name not in self.recording.columns:
+                return f"`{signal.name}` is not read: {self.recording.absence(signal.name)}"
+        return ""
+
+
+def not_covered(
+    document: Document, source: Source, properties: Iterable[PropertySpecification]
+) -> Iterator[Diagnostic]:
+    """A note for each property that `document` claims nothing of."""
+    for each, of in zip(document.properties, properties, strict=True):
+        if isinstance(each, NotCovered):
+            message = f"the evidence does not cover `{each.label}`: {each.reason}"
+            yield diagnostic("LTL851", source, of.span, message, help="its verdict is as without `--evidence`")

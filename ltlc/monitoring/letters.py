@@ -1,0 +1,185 @@
+"""The letters of a run as evidence has them: lines where something changes, kept while it is judged.
+
+An instant is a step, or a message that makes no step but from which an age counts. One has a line if it is the first,
+if its letter is not the one held, or if its time is that of the last line; `docs/evidence.md` says it in full.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Container, Iterable, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ltlc.assurance.evidence.document import Line, Summed
+from ltlc.runtime.sampling import Value
+from ltlc.semantics.durations import Nanoseconds
+from ltlc.semantics.properties import predicates
+from ltlc.semantics.timed_atoms import news_of
+from ltlc.specification.atoms import Atom
+from ltlc.specification.evaluation import letter
+from ltlc.specification.specification import PropertySpecification
+
+MOST_BYTES = 600
+"""Lines that are longer altogether are summed up."""
+
+
+class Letters:
+    """The lines of one property in one run, which grow with it.
+
+    A letter is a number, whose bits are those of the atoms. Steps by rows come one after the other, while it `is_told`
+    of them; where columns take steps, these come all at once.
+    """
+
+    def __init__(self, of: PropertySpecification, is_at_ticks: bool) -> None:
+        atoms = {atom.name: 1 << number for number, atom in enumerate(of.atoms)}
+        news = {each.name for part in predicates(of.property) for each in news_of(part)}
+        self._atoms: tuple[Atom, ...] = of.atoms
+        self._inputs = of.inputs()
+        self._bits = atoms
+        self._news = sum(bit for name, bit in atoms.items() if name in news)
+        self._messages = {of.arrival(name).signal.name: atoms[name] for name in of.messages()}
+        self._is_at_ticks = is_at_ticks
+        self.is_told = True
+        self.is_settled = False
+        self._pending: list[tuple[Nanoseconds, int]] = []
+        self._heard: dict[int, Nanoseconds] = {}
+        self._parts: list[tuple[NDArray[np.int64], NDArray[np.int64]]] = []
+        self._last: tuple[Nanoseconds, int] | None = None
+        self._seen: Nanoseconds = 0
+        self.first: Nanoseconds | None = None
+        self.session: Nanoseconds | None = None
+        self.are_ages_apart = False
+        self._lines: list[Line] = []
+        self._count = self._length = 0
+        self._sha256 = hashlib.sha256()
+        self._written: Nanoseconds | None = None
+        self._words: dict[int, str] = {}
+
+    def hear(self, time: Nanoseconds, signals: Container[str]) -> None:
+        """Messages come from which the ages of these signals count, before they are judged by rows."""
+        if self.is_told and not self.is_settled:
+            bits = sum(bit for signal, bit in self._messages.items() if signal in signals)
+            if bits:
+                self._pending.append((time, bits))
+
+    def step(self, time: Nanoseconds, values: Sequence[Value] | None) -> None:
+        """A step with these values of the inputs was taken by rows; None: it was none."""
+        if not self.is_told or self.is_settled:
+            return
+        if values is None:
+            self._flush()
+            return
+        holds = letter(self._atoms, dict(zip(self._inputs, values, strict=True)))
+        assert holds is not None, "a step at which something is NaN is none"
+        now, messages = sum(self._bits[name] for name in holds), sum(self._messages.values())
+        if self._is_at_ticks:
+            now &= ~messages
+            while self._pending and self._pending[-1][0] == time:
+                now |= self._pending.pop()[1]
+        elif now & messages:
+            self._pending.pop()
+        self._flush()
+        self._add(np.array([time]), np.array([now]))
+
+    def take(self, times: NDArray[np.int64], atoms: Iterable[NDArray[np.bool_]]) -> None:
+        """Steps at these times are taken by columns, where each of the atoms holds, up to when it is settled next."""
+        self._flush()
+        self.is_told = False
+        if not len(times):
+            return
+        self._seen = int(times[-1])
+        masks = list(atoms)
+        differs = np.zeros(len(times), np.bool_)
+        differs[0] = True
+        for number, mask in enumerate(masks):
+            if self._news >> number & 1:
+                differs |= mask
+            else:
+                differs[1:] |= mask[1:] != mask[:-1]
+        at = _with_ties(times, differs)
+        letters = np.zeros(len(at), np.int64)
+        for number, mask in enumerate(masks):
+            letters |= mask[at].astype(np.int64) << number
+        self._add(times[at], letters)
+
+    def _flush(self) -> None:
+        """Messages have come that made no step."""
+        pending, self._pending = self._pending, []
+        for time, bits in pending:
+            if self._last is None:
+                self._heard |= {bit: time for bit in self._messages.values() if bit & bits}
+            else:
+                self._add(np.array([time]), np.array([self._last[1] & ~self._news | bits]))
+
+    def _add(self, times: NDArray[np.int64], letters: NDArray[np.int64]) -> None:
+        """Instants at each of which there is a line, but perhaps at the first."""
+        self._seen = int(times[-1])
+        if self._last is None:
+            self.first = int(times[0])
+            self._begin(int(letters[0]))
+        elif times[0] != self._last[0] and letters[0] == self._last[1] & ~self._news:
+            times, letters = times[1:], letters[1:]
+        if len(times):
+            self._last = int(times[-1]), int(letters[-1])
+            self._parts.append((times, letters))
+
+    def _begin(self, now: int) -> None:
+        """The first step: since when ages count, of which none has a message at it."""
+        heard = {self._heard.get(bit) for bit in self._messages.values() if not bit & now}
+        self.are_ages_apart = len(heard) > 1
+        self.session = min((time for time in heard if time is not None), default=None)
+
+    def settle(self, until: Nanoseconds | None, *, is_over: bool = False) -> None:
+        """The steps so far can be written; if the property was decided at `until`, nothing later matters.
+
+        From now on it is told of steps by rows. If it `is_over`, nothing more comes.
+        """
+        self.is_told = True
+        if is_over:
+            self._flush()
+        self.is_settled = until is not None and self._seen > until
+        parts, self._parts = self._parts, []
+        for times, letters in parts:
+            end = len(times) if until is None else int(times.searchsorted(until, "right"))
+            self._write(times[:end].tolist(), letters[:end].tolist())
+
+    def _write(self, times: Sequence[int], letters: Sequence[int]) -> None:
+        if not len(times):
+            return
+        words, before = self._words, self._written
+        for now in {*letters} - words.keys():
+            words[now] = "".join(f" a{number}" for number in _numbers(now)) + "\n"
+        gaps = np.diff(times).tolist()
+        first = f"at {times[0]}" if before is None else f"+{times[0] - before}"
+        lines = [first, *[f"+{gap}" for gap in gaps]]
+        text = "".join([line + words[now] for line, now in zip(lines, letters, strict=True)])
+        if self._length <= MOST_BYTES:
+            self._lines += [Line(time, _numbers(now)) for time, now in zip(times[:MOST_BYTES], letters, strict=False)]
+        self._written = times[-1]
+        self._count += len(times)
+        self._length += len(text)
+        self._sha256.update(text.encode())
+
+    @property
+    def lines(self) -> tuple[Line, ...] | Summed:
+        """Those up to the time when it was settled last."""
+        if self._length <= MOST_BYTES:
+            return tuple(self._lines)
+        return Summed(self._count, self._sha256.hexdigest())
+
+
+def _numbers(bits: int) -> tuple[int, ...]:
+    return tuple(number for number in range(bits.bit_length()) if bits >> number & 1)
+
+
+def _with_ties(times: NDArray[np.int64], differs: NDArray[np.bool_]) -> NDArray[np.int64]:
+    """Where a letter `differs`, and what comes later at the same time."""
+    numbers = np.arange(len(times))
+    begins = np.ones(len(times), np.bool_)
+    begins[1:] = times[1:] != times[:-1]
+    if not begins.all():
+        since = np.maximum.accumulate(np.where(begins, numbers, 0))
+        differs = np.maximum.accumulate(np.where(differs, numbers, -1)) >= since
+    return np.flatnonzero(differs)
