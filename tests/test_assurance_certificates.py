@@ -36,11 +36,9 @@ def objections(subjects: list[Subject], text: str) -> list[str | None]:
 
 
 def test_certificates_of_the_specification_pass() -> None:
-    entries = {"stop_at_sign": STOP_SIGN, "line 4": SPEEDING}
-    expected = tuple(
-        Checked(label, EXACT, monitor=each.certificate.monitor, program=each.program) for label, each in entries.items()
-    )
-    assert check_certificates(SUBJECTS, TEXT) == expected
+    checked = check_certificates(SUBJECTS, TEXT)
+    assert checked == tuple(map(Checked, ["stop_at_sign", "line 4"], [EXACT] * 2, [None] * 2, parse(TEXT)))
+    assert [each.certified for each in checked] == parse(TEXT)
 
 
 def test_a_state_is_shown_to_be_undecided_by_letters_that_go_on_for_ever_where_there_are_such() -> None:

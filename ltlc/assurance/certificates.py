@@ -11,11 +11,9 @@ from ltlc.semantics.certificate import DEPTH, WORK, Answer, Certificate, check, 
 from ltlc.semantics.certificate_reader import UnreadableError, parse
 from ltlc.semantics.certificate_text import Entry
 from ltlc.semantics.conditions import Bound, Conditions
-from ltlc.semantics.control import Followed
 from ltlc.semantics.encodings import ENCODINGS, encode
 from ltlc.semantics.intervals import without_intervals
 from ltlc.semantics.ltl import TRUE, Formula
-from ltlc.semantics.monitor import Monitor
 from ltlc.semantics.properties import Property
 from ltlc.semantics.timed_atoms import Occurred, duration_of, operands, timed_atoms
 
@@ -35,16 +33,23 @@ class Subject:
 class Checked:
     """What became of one property: the checker's answer, or why its certificate was not even looked at.
 
-    `assumption` is what its certificate supposes of every letter, where the checker was asked; `monitor` the one that
-    it has certified; `program` what is said to follow that, which has not been checked.
+    `entry` is its certificate, where the checker was asked and has met no bound.
     """
 
     label: str
     answer: Answer
     objection: str | None = None
-    assumption: Formula = TRUE
-    monitor: Monitor | None = None
-    program: Followed | None = None
+    entry: Entry | None = None
+
+    @property
+    def assumption(self) -> Formula:
+        """What its certificate supposes of every letter."""
+        return TRUE if self.entry is None else self.entry.certificate.assumption
+
+    @property
+    def certified(self) -> Entry | None:
+        """The certificate, if it is accepted; its program has not been checked."""
+        return self.entry if self.answer.certified else None
 
     @property
     def passed(self) -> bool:
@@ -92,8 +97,7 @@ def _check(subject: Subject, entry: Entry | None) -> Checked:
         objection = "the certificate does not show it"
     elif not answer.exact:
         objection = "its verdicts are right, but one that could be permanent may be missing"
-    monitor = entry.certificate.monitor if answer.certified else None
-    return Checked(subject.label, answer, objection, entry.certificate.assumption, monitor, entry.program)
+    return Checked(subject.label, answer, objection, entry)
 
 
 def over_bound(bound: Bound) -> str:

@@ -1,56 +1,54 @@
-"""The seam between letters and verdicts: what evidence says of atoms, and of what was judged, is as specified.
+"""Whether evidence is about a specification: its properties, and for each atom by its name what it is as data.
 
-The judge sees the names of atoms, the reader what they are; nothing in the two ties these together. Here they are
-compared with the specification, by the front end of ltlc, which is trusted for this, and by nothing else of it.
+The judge sees names only, `recorded.py` sees data only. That the two mean the same is compared here with what the front
+end makes of the specification, which is what has to be trusted for it.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import zip_longest
 
 from ltlc.assurance.evidence.conditions import NotCoveredError, stated_atoms
-from ltlc.assurance.evidence.document import Claim, Document, NotCovered, condition_text
-from ltlc.semantics.encodings import EPISODE, Encoding
-from ltlc.specification.specification import PropertySpecification, Specification
+from ltlc.assurance.evidence.document import Claim, Document, condition_text
+from ltlc.specification.specification import Specification
 
 
-def differences(
-    document: Document, specification: Specification, sha256: str, encoding: Encoding = EPISODE
-) -> Iterator[str]:
-    """What `document` says otherwise than `specification`, whose file has this SHA-256: nothing if all is the same."""
+def differences(document: Document, specification: Specification) -> Iterator[str]:
+    """Where `document` as a whole is not about `specification`: its digest, settings, and its properties."""
     head = document.head
-    if head.specification[1] != sha256:
-        yield f"the specification has the SHA-256 {sha256}"
-    if head.rate != (None if specification.rate is None else repr(specification.rate)):
-        yield f"the specification has another `_rate_`: {specification.rate}"
+    if head.specification[1] != specification.source.sha256:
+        yield f"it is about a specification with another SHA-256: {head.specification[1]}"
+    rate = None if specification.rate is None else repr(specification.rate)
+    if head.rate != rate:
+        yield f"it has the rate {head.rate}, the specification {rate}"
     if head.timeout != specification.timeout:
-        yield f"the specification has another `_timeout_`: {specification.timeout}"
-    labels = [each.label for each in specification.properties]
-    if [each.label for each in document.properties] != labels:
-        yield f"the specification has other properties: {', '.join(labels)}"
-        return
-    for stated, of in zip(document.properties, specification.properties, strict=True):
-        yield from (f"{of.label}: {each}" for each in _about(stated, of, encoding))
+        yield f"it has the timeout {head.timeout}, the specification {specification.timeout}"
+    for stated, of in zip_longest(document.properties, specification.properties):
+        if stated is None or of is None or stated.label != of.label:
+            names = ["no property" if each is None else f"`{each.label}`" for each in (stated, of)]
+            yield f"it has {names[0]} where the specification has {names[1]}"
+            return
 
 
-def _about(stated: Claim | NotCovered, of: PropertySpecification, encoding: Encoding) -> Iterator[str]:
-    """What is said otherwise of one property."""
-    if isinstance(stated, NotCovered):
-        return
-    if stated.text != of.text:
-        yield f"it is specified as: {of.text}"
+def difference(claim: Claim, specification: Specification) -> str | None:
+    """Where `claim` differs from the property of its name in `specification`; None if it is about that."""
+    of = next((each for each in specification.properties if each.label == claim.label), None)
+    if of is None:
+        return "the specification has no such property"
+    if claim.text != of.text:
+        return f"the specification says `{of.text}`"
     requirement = of.requirement
-    verifies = () if requirement is None else requirement.attributes.get("verifies", ())
-    if (stated.requirement, stated.verifies) != (requirement and requirement.id, tuple(verifies)):
-        yield "it states another requirement"
+    verified = () if requirement is None else tuple(requirement.attributes.get("verifies", ()))
+    if (claim.requirement, claim.verifies) != (None if requirement is None else requirement.id, verified):
+        return "the specification states another requirement"
     try:
-        atoms = stated_atoms(of, encoding)
+        stated = stated_atoms(of)
     except NotCoveredError as error:
-        yield f"evidence does not cover it: {error}"
-        return
-    if [name for name, _ in stated.atoms] != [name for name, _ in atoms]:
-        yield f"its atoms are {', '.join(name for name, _ in atoms)}"
-        return
-    for (name, condition), (_, specified) in zip(stated.atoms, atoms, strict=True):
-        if condition_text(condition) != condition_text(specified):
-            yield f"`{name}` is {condition_text(specified)}"
+        return f"evidence does not cover it: {error}"
+    if [name for name, _ in claim.atoms] != [name for name, _ in stated]:
+        return "it has other atoms"
+    for (name, condition), (_, right) in zip(claim.atoms, stated, strict=True):
+        if condition_text(condition) != condition_text(right):
+            return f"`{name}` is {condition_text(right)}"
+    return None

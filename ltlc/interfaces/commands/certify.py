@@ -1,7 +1,8 @@
 """`ltlc certify`: certificates that someone else made, and code, checked against a specification.
 
 Trusted are the front end, the encoding and the checker; neither Spot nor what made the certificates. What made the code
-is not trusted either (`emitted_code`), nor what made the programs that code is printed from (`followed_programs`).
+is not trusted either (`emitted_code`), nor what made the programs that code is printed from (`followed_programs`), nor
+what judged recordings (`checked_evidence`).
 """
 
 from __future__ import annotations
@@ -11,14 +12,18 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from ltlc.assurance.certificates import Checked, Subject, Unreadable, check_certificates
+from ltlc.assurance.evidence.document import digest
+from ltlc.automata import Budget, SpotMissing
+from ltlc.base.diagnostics import Diagnostic
 from ltlc.compiler import Compiled
-from ltlc.frontend.language import load
+from ltlc.frontend.language import load_text, read_source
 from ltlc.frontend.language.suppression import unsuppressed
 from ltlc.interfaces.commands import arguments
+from ltlc.interfaces.commands.checked_evidence import check_evidence, documents_at
 from ltlc.interfaces.commands.common import FINDING, OK, failure, report, unusable
 from ltlc.interfaces.commands.emitted_code import Code, UnusableError, code_at, is_code_of
 from ltlc.interfaces.commands.followed_programs import are_followed
-from ltlc.interfaces.commands.progress import saying
+from ltlc.interfaces.commands.progress import progress, saying
 from ltlc.semantics.certificate_text import in_words
 from ltlc.semantics.encodings import ENCODINGS, Encoding, encode
 from ltlc.semantics.ltl import TRUE
@@ -29,7 +34,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """What `ltlc certify` takes."""
     arguments.add_specification(parser)
     arguments.add_reading(parser)
-    parser.add_argument("certificate", metavar="CERTIFICATE", type=Path, help="the file of certificates")
+    parser.add_argument(
+        "certificate",
+        metavar="CERTIFICATE",
+        type=Path,
+        nargs="?",
+        help="the file of certificates; with --evidence they are made anew if it is omitted",
+    )
     parser.add_argument(
         "--code",
         metavar="FILE",
@@ -42,44 +53,81 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="also check that the programs that run follow these monitors; for certificates of `ltlc build --program`",
     )
+    parser.add_argument(
+        "--evidence",
+        nargs="+",
+        type=Path,
+        metavar=("FILE", "RECORDING"),
+        help="also check that the recordings have the verdicts that FILE states, which `ltlc run --evidence` wrote",
+    )
 
 
 def run(options: argparse.Namespace) -> int:
-    """Say of each property whether its certificate proves its monitor right, and its code is that; 0 if all are."""
-    specification, diagnostics = load(options.specification, options.msg_path, ENCODINGS[options.encoding])
+    """Report what is certified, and what is checked by the certificates; 0 if all is right."""
+    source = read_source(options.specification)
+    encoding, recordings = ENCODINGS[options.encoding], (options.evidence or [])[1:]
+    specification, diagnostics = (
+        (None, [source])
+        if isinstance(source, Diagnostic)
+        else load_text(source, options.msg_path, encoding, recordings)
+    )
     report(unsuppressed(diagnostics))
     if specification is None:
         return failure(diagnostics)
     try:
-        text = _read(options.certificate)
-        code = None if options.code is None else code_at(options.code)
-    except UnusableError as error:
+        return _certify(options, specification, encoding)
+    except (UnusableError, SpotMissing) as error:
         return unusable(str(error))
+
+
+def _certify(options: argparse.Namespace, specification: Specification, encoding: Encoding) -> int:
+    """Say of each property whether its certificate proves its monitor right, and check what was asked for."""
+    documents = documents_at(options.evidence[0]) if options.evidence else ()
+    text = _certificates(options, specification, encoding)
+    code = None if options.code is None else code_at(options.code)
     subjects = [Subject(p.label, p.line, p.property, p.alphabet, options.encoding) for p in specification.properties]
     with saying("checking certificates", options.quiet):
         checked = check_certificates(subjects, text)
     if isinstance(checked, Unreadable):
-        return unusable(f"{options.certificate}:{checked.line}: {checked.message}")
+        raise UnusableError(f"{options.certificate}:{checked.line}: {checked.message}")
     counting = {each.label for each in specification.properties if each.counts()}
     for each in checked:
         print(f"{each.label}: {_answer(each, each.label in counting)}")
         if each.assumption != TRUE:
             print(f"  assuming {in_words(each.assumption)}")
     is_right = all(each.passed for each in checked)
-    compiled = _compiled(specification, checked, ENCODINGS[options.encoding])
+    compiled = _compiled(specification, checked, encoding)
     if options.program:
         is_right = are_followed(checked, compiled, options.quiet) and is_right
     if code is not None:
-        try:
-            is_right = _is_code_of(code, compiled, specification, options.quiet) and is_right
-        except UnusableError as error:
-            return unusable(str(error))
-    return OK if is_right else FINDING
+        is_right = _is_code_of(code, compiled, specification, options.quiet) and is_right
+    found = OK
+    if documents:
+        entries = {each.label: each.certified for each in checked if each.certified is not None}
+        certificates = digest(text), entries
+        found, _ = check_evidence(documents, specification, certificates, options.evidence[1:], options.quiet)
+    return found if is_right else FINDING
+
+
+def _certificates(options: argparse.Namespace, specification: Specification, encoding: Encoding) -> str:
+    """The text of the certificates that were given, or are made anew. Raises UnusableError and SpotMissing."""
+    if options.certificate is not None:
+        return _read(options.certificate)
+    if not options.evidence:
+        raise UnusableError("give CERTIFICATE, or evidence with --evidence, for which certificates are made anew")
+    from ltlc.assurance.evidence.certified import certificates
+    from ltlc.compiler import compile_specification
+
+    budget = Budget()
+    with progress("making certificates", options.quiet) as watch:
+        compiled, problems = compile_specification(specification, encoding, budget, watch)
+        report(problems)
+        return certificates(compiled, budget)[0]
 
 
 def _read(path: Path) -> str:
     try:
-        return path.read_text(encoding="utf-8")
+        return path.read_bytes().decode("utf-8")
     except OSError as error:
         raise UnusableError(f"{path} cannot be read: {error.strerror or error}") from None
     except UnicodeDecodeError:
@@ -97,9 +145,9 @@ def _answer(checked: Checked, counts: bool) -> str:
 def _compiled(specification: Specification, checked: Sequence[Checked], encoding: Encoding) -> list[Compiled]:
     """Each property whose monitor is certified, with that monitor."""
     return [
-        Compiled(each, encoding, encode(each.property, encoding), found.monitor)
+        Compiled(each, encoding, encode(each.property, encoding), found.certified.certificate.monitor)
         for each, found in zip(specification.properties, checked, strict=False)  # others that are checked come last
-        if found.monitor is not None
+        if found.certified is not None
     ]
 
 

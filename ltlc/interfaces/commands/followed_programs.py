@@ -31,9 +31,9 @@ def _objection(checked: Checked, compiled: Compiled | None) -> str | None:
         return "there is no certified monitor to compare its program with"
     if reason := uncovered(compiled):
         return f"{reason}, which is not covered yet"
-    if checked.program is None:
+    if checked.certified is None or checked.certified.program is None:
         return "the certificate has no program; `ltlc build --program` writes it"
-    return _difference(checked, checked.program, compiled)
+    return _difference(checked, checked.certified.program, compiled)
 
 
 def _difference(checked: Checked, program: Followed, compiled: Compiled) -> str | None:
