@@ -38,7 +38,8 @@ class Line(NamedTuple):
     atoms: tuple[int, ...]
 
 
-class Summed(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class Summed:
     """What stands in the place of many lines: how many there are, and the SHA-256 of their text."""
 
     count: int

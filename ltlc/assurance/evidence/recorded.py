@@ -13,6 +13,7 @@ ltlc. `docs/evidence.md` there describes the document; what is computed is what 
 from __future__ import annotations
 
 import hashlib
+import itertools
 import json
 import math
 import os
@@ -180,8 +181,8 @@ def told(path: Path) -> dict[str, str]:
 class Topic:
     """The messages on a topic: their times, their places in the recording, and by path the values in them."""
 
-    times: list[int] = field(default_factory=list)
-    places: list[int] = field(default_factory=list)
+    times: Array = field(default_factory=list)
+    places: Array = field(default_factory=list)
     values: dict[str, list[Any]] = field(default_factory=dict)
 
 
@@ -192,6 +193,7 @@ class Recording:
     first: int | None
     last: int | None
     topics: dict[str, Topic]
+    kept: dict[Any, Any] = field(default_factory=dict)
 
 
 def parts(x: Json) -> Iterator[Json]:
@@ -334,12 +336,13 @@ def part_of(found: Recording, head: Part, *, by_header: bool) -> Recording:
     since, to = head.time("from"), head.time("to")
     earliest, latest = -math.inf if since is None else since, math.inf if to is None else to
     for topic in found.topics.values():
-        order = sorted(range(len(topic.times)), key=lambda n: (topic.times[n], topic.places[n]))
-        order = [n for n in order if earliest <= topic.times[n] <= latest]
-        topic.times, topic.places = [topic.times[n] for n in order], [topic.places[n] for n in order]
-        topic.values = {path: [of[n] for n in order] for path, of in topic.values.items()}
+        times, places = np.array(topic.times, np.int64), np.array(topic.places, np.int64)
+        order = np.lexsort((places, times))
+        order = order[(times[order] >= earliest) & (times[order] <= latest)]
+        topic.times, topic.places = times[order], places[order]
+        topic.values = {path: [of[n] for n in order.tolist()] for path, of in topic.values.items()}
     if by_header:
-        spans = [(topic.times[0], topic.times[-1]) for topic in found.topics.values() if topic.times]
+        spans = [(int(topic.times[0]), int(topic.times[-1])) for topic in found.topics.values() if len(topic.times)]
         found.first = min((first for first, _ in spans), default=None)
         found.last = max((last for _, last in spans), default=None)
     elif since is not None and found.first is not None:
@@ -704,22 +707,25 @@ class Instants:
         """With `session`, an instant of its own is the first, or the first tick is then."""
         self.topics = {name: recorded.topics[name] for name in sorted(topics)}
         self.is_ticks = rate is not None
-        starts = [topic.times[0] for topic in self.topics.values() if topic.times] if session is None else [session]
+        starts = [int(topic.times[0]) for topic in self.topics.values() if len(topic.times)]
+        starts = starts if session is None else [session]
         if rate is not None:
             self.times = ticks(rate, min(starts), recorded.last) if starts else np.zeros(0, np.int64)
         else:
-            pairs = {(t, p) for topic in self.topics.values() for t, p in zip(topic.times, topic.places, strict=True)}
-            ordered = sorted(pairs | ({(session, -1)} if session is not None else set()))
-            self.places = {place: n for n, (_, place) in enumerate(ordered)}
-            self.times = np.array([time for time, _ in ordered], np.int64)
+            own = [] if session is None else [session]
+            times = np.concatenate([np.array(own, np.int64), *(topic.times for topic in self.topics.values())])
+            places = np.concatenate([np.full(len(own), -1), *(topic.places for topic in self.topics.values())])
+            order = np.lexsort((places, times))
+            self.times, place_of = times[order], np.empty(len(order), np.int64)
+            place_of[order] = np.arange(len(order))
+            ends = np.cumsum([len(own), *(len(topic.times) for topic in self.topics.values())]).tolist()
+            pairs = itertools.pairwise(ends)
+            self.places = {name: place_of[a:b] for name, (a, b) in zip(self.topics, pairs, strict=True)}
         self.count = len(self.times)
 
     def at(self, name: str) -> Array:
         """At which instants the messages of a topic come; of ticks, which is the first to see each."""
-        topic = self.topics[name]
-        if self.is_ticks:
-            return self.times.searchsorted(np.array(topic.times, np.int64))
-        return np.array([self.places[place] for place in topic.places], np.int64)
+        return self.times.searchsorted(self.topics[name].times) if self.is_ticks else self.places[name]
 
     def heard(self, names: Iterable[str], *, now: bool = False) -> Array:
         """Where there is news of some topics; with `now`, at this very time."""
@@ -728,7 +734,7 @@ class Instants:
             at = self.at(name)
             seen = at < self.count
             if now and self.is_ticks:
-                seen[seen] = self.times[at[seen]] == np.array(self.topics[name].times, np.int64)[seen]
+                seen[seen] = self.times[at[seen]] == self.topics[name].times[seen]
             found[at[seen]] = True
         return found
 
@@ -739,8 +745,7 @@ class Instants:
         known = [values[n] for n in having.tolist()]
         fresh = np.zeros(self.count, bool)
         if self.is_ticks:
-            times = np.array(self.topics[x["topic"]].times, np.int64)[having]
-            latest = times.searchsorted(self.times, "right") - 1
+            latest = self.topics[x["topic"]].times[having].searchsorted(self.times, "right") - 1
             fresh = latest >= 0
             taken = latest[fresh]
         else:
@@ -1075,12 +1080,21 @@ class Run:
     news: int
 
 
+def values_of(recorded: Recording, topics: set[str], rate: Fraction | None, session: int | None) -> Values:
+    """The values at the instants of some topics, made once."""
+    key = frozenset(topics), session
+    if key not in recorded.kept:
+        recorded.kept[key] = Values(Instants(recorded, topics, rate, session))
+    found: Values = recorded.kept[key]
+    return found
+
+
 def run_of(claim: Part, recorded: Recording, head: Part, first: int, *, apart: bool) -> Run:
     """The run of a property. With `apart`, what begins with the session has an instant of its own there."""
     atoms, rate = claim.atoms, Fraction(head.one("rate")) if head.one("rate") else None
     begins = not is_waited_for(atoms) and (apart or rate is not None)
-    instants = Instants(recorded, topics_of(atoms), rate, first if begins else None)
-    values, count = Values(instants), instants.count
+    values = values_of(recorded, topics_of(atoms), rate, first if begins else None)
+    instants, count = values.instants, values.instants.count
     letters, begun, valid = np.zeros(count, np.int64), np.ones(count, bool), np.ones(count, bool)
     stepped = np.full(count, rate is not None)
     stepped[:1] |= begins
@@ -1103,22 +1117,21 @@ def with_messages(run: Run, steps: Array, instants: Instants, messages: dict[int
     """The steps, and between them the messages that make none, but from which ages count; of each the bit."""
     if not len(steps):
         return run
-    is_step = set(run.times.tolist() if instants.is_ticks else steps.tolist())
-    others: dict[tuple[int, int], int] = {}
+    is_step = set(run.times.tolist() if instants.is_ticks else steps.tolist()) if messages else set()
+    others: dict[tuple[int, int], tuple[int, int]] = {}
     for bit, name in ((bit, name) for bit, names in messages.items() for name in names):
         topic = instants.topics[name]
-        for time, place, at in zip(topic.times, topic.places, instants.at(name).tolist(), strict=True):
+        for time, place, at in zip(
+            *map(np.ndarray.tolist, (topic.times, topic.places, instants.at(name))), strict=True
+        ):
             if (time if instants.is_ticks else at) not in is_step:
-                others[time, place] = others.get((time, place), 0) | bit
+                others[time, place] = others.get((time, place), (0, 0))[0] | bit, at
     heard: dict[int, int | None] = {bit: None for bit in messages if not int(run.letters[0]) & bit}
     more = []
-    for (time, place), bits in sorted(others.items()):
-        if instants.is_ticks:
-            at = int(run.times.searchsorted(time, "right"))
-        else:
-            at = int(steps.searchsorted(instants.places[place]))
-        if at:
-            more.append((at, time, (int(run.letters[at - 1]) & ~run.news) | bits))
+    for (time, _), (bits, at) in sorted(others.items()):
+        before = int(run.times.searchsorted(time, "right") if instants.is_ticks else steps.searchsorted(at))
+        if before:
+            more.append((before, time, (int(run.letters[before - 1]) & ~run.news) | bits))
         else:
             heard |= {bit: time for bit in heard if bit & bits}
     if len({*heard.values()}) > 1:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from os import SEEK_END
 from pathlib import Path
 from typing import Self
 
@@ -74,7 +75,7 @@ class Bundle:
     def __exit__(self, *exception: object) -> None:
         """What follows in the file is of recordings that are not judged any more, unless the campaign was stopped."""
         with _writing():
-            if exception == (None, None, None):
+            if exception == (None, None, None) and self._file.seek(0, SEEK_END) > self._end:
                 self._file.truncate(self._end)
             self._file.close()
             if not self._end and exception == (None, None, None):

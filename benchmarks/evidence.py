@@ -1,0 +1,186 @@
+"""Evidence as an oracle, and what it costs.
+
+    python -m benchmarks.evidence [--runs N] [--seed N] [--journal FILE]
+    python -m benchmarks.evidence --again SEED
+    python -m benchmarks.evidence --cost [--repeat N]
+
+Each seed is a random bag that is judged by all forms of properties that evidence covers (`tests/evidencing.py`), with a
+rate or without; `recorded.py`, which shares nothing with ltlc, must find the letters that are written. What was tried
+is kept in a journal, a line for each seed, so that a campaign that was stopped goes on, up to N property-runs in all.
+With --cost, a bag of odometry is judged with and without `--evidence`, and read again. Exit code 1 if something
+differs.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from collections.abc import Iterator
+from itertools import count
+from pathlib import Path
+from random import Random
+from statistics import median
+from subprocess import DEVNULL, run
+from tempfile import TemporaryDirectory
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
+
+from evidencing import BEGINNING, PROPERTIES, TYPES, disagreements, header, make, write_bag
+
+from ltlc.assurance.evidence import recorded
+
+JOURNAL = Path(__file__).parents[1] / "build" / "evidence.jsonl"
+MESSAGES = 100_000
+ODOMETRY = """
+decl x /odom nav_msgs/Odometry.pose.pose.position.x
+decl v /odom nav_msgs/Odometry.twist.twist.linear.x
+decl w /odom nav_msgs/Odometry.twist.twist.angular.z
+c0: never v > 2
+c1: never abs(x - @{x, -1}) > 0.5
+c2: always (v > 0.9 implies eventually v < 0.1 within 20 s)
+c3: always age(v) <= 50 ms
+c4: after_until v > 0.5, v < 0.1, never abs(w) > 2
+c5: always hypot(x, v) < 1000
+c6: never historically v > 0.5 for 20 s
+c7: always (abs(w) > 0.9 implies once v > 0.5 within 30 s)
+c8: always x >= -100
+c9: eventually x > 1
+d0: never (v > 0.5 and w > 0.99)
+d1: always sqrt(abs(v)) < 1.2
+"""
+
+
+def main() -> int:
+    """Look for differences, or measure."""
+    parser = argparse.ArgumentParser(description="Compare evidence with what a plain reader computes.")
+    parser.add_argument("--runs", type=int, default=10_000, help="how many property-runs in all")
+    parser.add_argument("--seed", type=int, default=1000, help="the first seed")
+    parser.add_argument("--journal", type=Path, default=JOURNAL)
+    parser.add_argument("--again", type=int, metavar="SEED", help="only one seed")
+    parser.add_argument("--cost", action="store_true", help="measure sizes and times")
+    parser.add_argument("--repeat", type=int, default=5)
+    options = parser.parse_args()
+    if options.cost:
+        cost(options.repeat)
+        return 0
+    if options.again is not None:
+        found = tried(options.again)
+        print("\n".join(found) or "as it should be")
+        return 1 if found else 0
+    return campaign(options.journal, options.seed, options.runs)
+
+
+def tried(seed: int) -> list[str]:
+    """What differs on the bag of one seed."""
+    with TemporaryDirectory() as folder:
+        return list(disagreements(seed, Path(folder)))
+
+
+def campaign(journal: Path, first: int, runs: int) -> int:
+    """Try seeds that the journal has not, until there were so many property-runs."""
+    journal.parent.mkdir(parents=True, exist_ok=True)
+    known = {each["seed"]: each for each in entries(journal)}
+    with journal.open("a", encoding="utf-8") as file:
+        for seed in count(first):
+            if len(known) * len(PROPERTIES) >= runs:
+                break
+            if seed not in known:
+                known[seed] = {"seed": seed, "found": tried(seed)}
+                file.write(json.dumps(known[seed]) + "\n")
+                file.flush()
+    wrong = [each for each in known.values() if each["found"]]
+    for each in wrong:
+        print(each["seed"], *each["found"], sep="\n  ")
+    print(f"{len(known)} bags, {len(known) * len(PROPERTIES)} property-runs, {len(wrong)} bags with differences")
+    return 1 if wrong else 0
+
+
+def entries(journal: Path) -> Iterator[dict[str, Any]]:
+    if journal.exists():
+        yield from map(json.loads, journal.read_text(encoding="utf-8").splitlines())
+
+
+def cost(repeat: int) -> None:
+    """Sizes, and medians of times in seconds, side by side."""
+    with TemporaryDirectory() as folder:
+        at = Path(folder)
+        bag = odometry(at / "bag")
+        (at / "props.txt").write_text(ODOMETRY)
+        ltlc = [str(Path(sys.executable).with_name("ltlc")), "run", str(at / "props.txt"), str(bag), "--quiet"]
+        reader = [sys.executable, str(recorded.__file__), str(at / "evidence.txt"), str(bag)]
+        commands: dict[str, list[str]] = {
+            "run": ltlc,
+            "run --evidence": [*ltlc, "--evidence", str(at / "evidence.txt")],
+            "recorded.py": reader,
+            "deserialising": [sys.executable, "-c", DESERIALISE, str(bag)],
+        }
+        times: dict[str, list[float]] = {name: [] for name in commands}
+        for _ in range(repeat):
+            for name, command in commands.items():
+                times[name].append(timed(command))
+        size = sum(file.stat().st_size for file in bag.iterdir())
+        written = (at / "evidence.txt").stat().st_size
+        print(f"{size:,} bytes of bag, {written:,} of evidence: {written / size:.4%}")
+        for name, measured in times.items():
+            print(f"{name}: {median(measured):.2f} s")
+
+
+DESERIALISE = """
+import sys
+from pathlib import Path
+from rosbags.highlevel import AnyReader
+with AnyReader([Path(sys.argv[1])]) as reader:
+    for connection, _, raw in reader.messages():
+        reader.deserialize(raw, connection.msgtype)
+"""
+
+
+def timed(command: list[str]) -> float:
+    start = perf_counter()
+    run(command, check=False, stdout=DEVNULL, stderr=DEVNULL)
+    return perf_counter() - start
+
+
+def odometry(path: Path) -> Path:
+    """A robot that drives to and fro, 50 messages a second."""
+    chance, position, speed = Random(1), 0.0, 0.0
+    TYPES["/odom"] = "nav_msgs/msg/Odometry"
+    rows = []
+    for number in range(MESSAGES):
+        speed = max(0.0, min(1.0, speed + chance.gauss(0, 0.02)))
+        position += speed / 50
+        rows.append((BEGINNING + number * 20_000_000, "/odom", message(position, speed, chance.uniform(-1, 1))))
+    return write_bag(path, rows)
+
+
+def message(x: float, v: float, w: float) -> object:
+    """What an odometry says."""
+    none = np.zeros(36)
+    turned = make("geometry_msgs/msg/Quaternion", x=0.0, y=0.0, z=0.0, w=1.0)
+    pose = make(
+        "geometry_msgs/msg/Pose", position=make("geometry_msgs/msg/Point", x=x, y=0.0, z=0.0), orientation=turned
+    )
+    linear, angular = (
+        make("geometry_msgs/msg/Vector3", x=v, y=0.0, z=0.0),
+        make("geometry_msgs/msg/Vector3", x=0.0, y=0.0, z=w),
+    )
+    return make(
+        "nav_msgs/msg/Odometry",
+        header=header(),
+        child_frame_id="base",
+        pose=make("geometry_msgs/msg/PoseWithCovariance", pose=pose, covariance=none),
+        twist=make(
+            "geometry_msgs/msg/TwistWithCovariance",
+            twist=make("geometry_msgs/msg/Twist", linear=linear, angular=angular),
+            covariance=none,
+        ),
+    )
+
+
+if __name__ == "__main__":
+    sys.exit(main())
