@@ -11,9 +11,9 @@ from replaying import MESSAGES, judged, outcomes
 from stepping import from_text, session
 
 from ltlc.assurance.c_library import compiler
+from ltlc.assurance.c_programs import c_programs, rust_programs
 from ltlc.assurance.lowered.equality import Equal, compare
 from ltlc.assurance.lowered.letters import Judged
-from ltlc.assurance.programs import c_programs, rust_programs
 from ltlc.assurance.reading import rust as reading_rust
 from ltlc.assurance.reading.c.files import WrittenInC
 from ltlc.assurance.reading.outcomes import Difference, ReadBack
