@@ -162,11 +162,9 @@ def _of_monitor(subject: Subject, messages: Messages) -> dict[str, Any]:
 def _of_code(subject: Subject, messages: Messages) -> dict[str, Any]:
     """What is judged of its code, run and read."""
     compiled, program, written = subject.compiled, subject.program, subject.written
-    runs = program and program.runs(compiled, _samples(compiled, messages))
-    return {
-        "replay": None if program is None or runs is None else replay(compiled, program.start, runs),
-        "reading": written if written is None or isinstance(written, Difference) else written.read_back(),
-    }
+    replayed = program and replay(compiled, program.start, program.runs(compiled, _samples(compiled, messages)))
+    read_back = written if written is None or isinstance(written, Difference) else written.read_back()
+    return {"replay": replayed, "reading": read_back}
 
 
 def _samples(compiled: Compiled, messages: Messages) -> Samples:
