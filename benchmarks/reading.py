@@ -35,9 +35,10 @@ from timed_mutants import class_text, code_differs
 from ltlc.assurance.afresh import c as whole_c
 from ltlc.assurance.afresh import python as whole_python
 from ltlc.assurance.afresh.outcomes import Equal
+from ltlc.assurance.c_programs import c_programs
 from ltlc.assurance.gate import Subject, judge
 from ltlc.assurance.messages import Messages
-from ltlc.assurance.programs import c_programs, programs
+from ltlc.assurance.programs import programs
 from ltlc.assurance.reading.c.files import written as written_in_c
 from ltlc.assurance.reading.c.lexing import tokens
 from ltlc.assurance.reading.c.parsing import parsed

@@ -1,7 +1,8 @@
 """What commands take to start: `python -m benchmarks.start [--before TREE] [--rounds N]`.
 
 Whole processes that write bytecode, taking turns, medians: `ltlc run` of one property on an MCAP file of 67 messages,
-`ltlc check` of that property, `ltlc --version`, and beside them what Python, numpy and spot take by themselves.
+`ltlc check` of that property, `ltlc build` of one with a bound on time, `ltlc --version`, and beside them what Python,
+numpy and spot take by themselves.
 `--before` is another tree of the project, to compare this one with.
 """
 
@@ -22,6 +23,9 @@ from benchmarks.bags import messages, write_mcap
 
 HERE = Path(__file__).parents[1]
 PROPERTY = "decl odom /odom Odometry.pose.pose.position\nstep: never odom.x - @{odom.x, -1} > 5\n"
+TIMED = """decl scan /scan LaserScan.ranges
+always (min(scan) < 0.3 implies eventually min(scan) > 0.5 within 2 s)
+"""
 ALONE = {"python": ["-c", ""], "import numpy": ["-c", "import numpy"], "import spot": ["-c", "import spot"]}
 
 
@@ -49,7 +53,8 @@ def main() -> None:
 
 def prepared(folder: Path) -> dict[str, list[str]]:
     """The commands, on files that are made in `folder`."""
-    specification, bag = folder / "small.txt", folder / "small.mcap"
+    specification, timed, bag = folder / "small.txt", folder / "timed.txt", folder / "small.mcap"
+    timed.write_text(TIMED, encoding="utf-8")
     specification.write_text(PROPERTY, encoding="utf-8")
     write_mcap(bag, messages(22), CompressionType.ZSTD)
     ltlc = ["-m", "ltlc"]
@@ -57,6 +62,7 @@ def prepared(folder: Path) -> dict[str, list[str]]:
         "ltlc --version": [*ltlc, "--version"],
         "ltlc check": [*ltlc, "check", str(specification)],
         "ltlc run": [*ltlc, "run", str(specification), str(bag)],
+        "ltlc build": [*ltlc, "build", str(timed), "-o", str(folder / "timed.py")],
     }
 
 

@@ -92,6 +92,15 @@ def test_what_only_stands_for_the_message_of_an_instance_is_not_explained() -> N
     assert atom == ("x > @{goal, opening}", "x is more than goal at that message")
 
 
+def test_an_age_is_explained_rather_than_the_messages_from_which_it_counts() -> None:
+    specification, _ = load_text(Source("p", f"{MORE}always (age(x) <= 1.5 s or x < 1)"))
+    assert specification is not None
+    assert English(specification.properties[0]).atoms() == [
+        ("x < 1", "x is less than 1"),
+        ("age(x) <= 1.5 s", "the last message of x is at most 1.5 s old"),
+    ]
+
+
 @pytest.mark.parametrize(
     ("text", "sentence"),
     [

@@ -47,8 +47,8 @@ from ltlc import cli
 from ltlc.assurance import c_library
 from ltlc.assurance.c_library import FLAGS as C_FLAGS
 from ltlc.assurance.c_library import Library, compiler
+from ltlc.assurance.c_programs import c_programs
 from ltlc.assurance.compiled_program import VERDICTS
-from ltlc.assurance.programs import c_programs
 from ltlc.assurance.replay import Deviation, Replayed
 from ltlc.backends.c import Files, emit
 from ltlc.backends.c.code import comment

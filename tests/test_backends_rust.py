@@ -21,8 +21,8 @@ from lowered import texts
 from replaying import judged
 from stepping import expected, from_text, machines, samples, specification
 
+from ltlc.assurance.c_programs import rust_programs
 from ltlc.assurance.compiled_program import VERDICTS
-from ltlc.assurance.programs import rust_programs
 from ltlc.assurance.replay import Deviation, Replayed
 from ltlc.assurance.rust_library import RustLibrary, compiler
 from ltlc.backends.rust import MISSING, emit, file_of

@@ -102,7 +102,7 @@ def test_what_is_made_of_a_bag_with_its_own_definitions_judges_it(tmp_path: Path
     assert main(["new", path, "-o", props]) == 0
     text = " ".join(Path(props).read_text().split("\n# "))
     assert "Level.level" in text
-    assert f"`ltlc check --recording {Path(path).name}`" in text
+    assert f"`--msg-path {Path(path).name}` gives them to `ltlc check`" in text
     assert main(["check", props, "--recording", path, "--strict"]) == 0
     assert main(["run", props, path]) == 0
 
@@ -206,7 +206,7 @@ def test_messages_without_a_definition_are_those_of_the_distribution(tmp_path: P
     report = judged(NEAR, path)
     assert (report.exit_code, report.document()["definitions"]) == (1, {"/range": "ROS 2 Humble"})
     (told,) = report.diagnostics
-    assert (told.code, "on `/range`: ROS 2 Humble does; it was recorded with ROS 2 Humble" in told.message) == (
+    assert (told.code, "on `/range`: ROS 2 Humble does; the recording is from ROS 2 Humble" in told.message) == (
         "LTL818",
         True,
     )
@@ -217,11 +217,11 @@ def test_which_definitions_are_taken_is_said_where_the_recording_says_nothing(tm
     report = judged(NEAR, path)
     assert (report.exit_code, report.definitions) == (1, {"/range": "ROS 2 Jazzy"})
     (told,) = report.diagnostics
-    assert "ROS 2 Jazzy does; it does not say which ROS recorded it" in told.message
+    assert "ROS 2 Jazzy does; the recording does not name its ROS distribution" in told.message
     assert "--msg-path" in told.help
     distributed(path, "rolling")
     (told,) = judged(NEAR, path).diagnostics
-    assert "ROS 2 Jazzy does; it was recorded with ROS 2 Rolling" in told.message
+    assert "ROS 2 Jazzy does; the recording is from ROS 2 Rolling" in told.message
     own = mcap(tmp_path / "own.mcap", [Sent("/range", RANGE, SECOND, made(RANGE))])
     assert (judged(NEAR, own).definitions, judged(NEAR, own).diagnostics) == ({"/range": "the recording"}, ())
 

@@ -189,8 +189,8 @@ WINDOWS = [
     ("102.5", "102.5", 3, [0], ""),  # one without
     ("102.3", "102.6", 3, [0], ""),
     ("103", "102", 2, [], "`--from`, 103 s, is after `--until`, 102 s"),
-    ("105", "105", 2, [], "the recording ends before the time of `--from`"),
-    ("98", "99", 2, [], "the recording begins after the time of `--until`"),
+    ("105", "105", 2, [], "the recording ends before the time of `--from`: it begins at 100 s and lasts 4 s\n"),
+    ("98", "99", 2, [], "the recording begins after the time of `--until`: it begins at 100 s\n"),
 ]
 
 

@@ -11,9 +11,9 @@ from replaying import MESSAGES, judged, outcomes
 from stepping import from_text, session
 
 from ltlc.assurance.c_library import compiler
+from ltlc.assurance.c_programs import c_programs, rust_programs
 from ltlc.assurance.lowered.equality import Equal, compare
 from ltlc.assurance.lowered.letters import Judged
-from ltlc.assurance.programs import c_programs, rust_programs
 from ltlc.assurance.reading import rust as reading_rust
 from ltlc.assurance.reading.c.files import WrittenInC
 from ltlc.assurance.reading.outcomes import Difference, ReadBack
@@ -225,7 +225,8 @@ def test_what_came_before_a_property_began_is_reported_with_its_verdict() -> Non
     run.message(7 * SECOND // 2, "/on", [True])
     run.message(4 * SECOND, "/v", [1.0])
     [track] = run.tracks
-    told = "began at +3.5 s, when /on first spoke; 12 messages on /v and 1 message on /w before that were not judged"
+    missed = "12 messages on /v and 1 message on /w before that were not judged"
+    told = f"began at +3.5 s, after the first message on /on; {missed}"
     assert told in reports.summary(run.session)
     assert told in junit.junit("run", run.session)
     [said] = documents.document("run", run.session)["properties"]
@@ -249,6 +250,7 @@ def test_messages_before_the_first_tick_with_a_step_are_counted_by_ticks_that_sa
     run.message(7 * SECOND // 4, "/w", [0.0])
     run.message(9 * SECOND // 4, "/on", [True])
     run.advance(3 * SECOND)
-    assert "began at +2.5 s, when /on first spoke; 4 messages on /v and 1 message on /w before that" in reports.summary(
-        run.session
+    assert (
+        "began at +2.5 s, after the first message on /on; 4 messages on /v and 1 message on /w before that"
+        in reports.summary(run.session)
     )

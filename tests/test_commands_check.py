@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from typing import Any
 
@@ -139,6 +140,13 @@ def test_explain_says_what_a_property_means_and_shows_a_run_for_each_verdict(tmp
     for caption in ("satisfied, whatever follows", "presumably satisfied", "presumably violated"):
         assert f"\n  {caption}\n" in output
     assert "never violated" in output
+
+
+def test_explain_shows_a_message_that_opens_a_scope_and_then_gets_old(tmp_path: Path, capsys: Any) -> None:
+    (tmp_path / "p.txt").write_text("decl s /odom Odometry.twist.twist.linear.x\nafter new s, always age(s) <= 1.7 s\n")
+    assert main(["explain", str(tmp_path / "p.txt")]) == 0
+    shown = capsys.readouterr().out
+    assert re.search(r"violated at the earliest\n.*\n +0 +0 +true .*\n +1\.700000001 +false  violated\n", shown)
 
 
 def test_explain_of_what_is_neither_a_file_nor_a_code_is_unusable() -> None:

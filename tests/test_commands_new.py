@@ -133,7 +133,7 @@ def test_a_message_path_makes_types_known(new: Run, tmp_path: Path, capsys: pyte
     assert "from the bag" not in written
 
 
-FROM_THE_BAG = "are known from the bag alone"
+FROM_THE_BAG = "are defined in the bag alone"
 
 
 def start_of(path: Path) -> str:
@@ -144,7 +144,7 @@ def start_of(path: Path) -> str:
 def test_a_file_made_of_a_bag_with_types_of_its_own_says_how_other_commands_know_them(tmp_path: Path) -> None:
     bag = mcap(tmp_path / "drive.mcap", [Sent("/level", LEVEL, 0, made(LEVEL))])
     assert main(["new", str(bag), "-o", str(tmp_path / "props.txt")]) == 0
-    assert f"{FROM_THE_BAG}: `ltlc check --recording {bag.name}`" in start_of(tmp_path / "props.txt")
+    assert f"{FROM_THE_BAG}: `--msg-path {bag.name}` gives them to `ltlc check`" in start_of(tmp_path / "props.txt")
 
 
 def test_a_file_made_of_a_bag_with_types_that_ros_brings_does_not(tmp_path: Path) -> None:
@@ -211,7 +211,12 @@ def test_types_are_known_by_their_names_in_ros_1_too(new: Run, capsys: pytest.Ca
 
 
 @pytest.mark.parametrize(
-    ("topics", "said"), [("", "no topics"), ("/a [b/msg/C]", "/a [b/msg/C]: add message definitions with `--msg-path`")]
+    ("topics", "said"),
+    [
+        ("", "there is no topic to write properties for\n"),
+        ("/a [b/msg/C]", "properties for\n  /a [b/msg/C]: the type is unknown; `--msg-path` adds the messages of"),
+        ("/rosout [rcl_interfaces/msg/Log]", "/rosout [rcl_interfaces/msg/Log]: it is about ROS, not about the robot"),
+    ],
 )
 def test_without_a_topic_to_speak_of_nothing_is_written(
     new: Run, topics: str, said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
@@ -402,6 +407,24 @@ def test_strings_that_recur_sizes_and_remarks_are_told_and_counters_are_not(
     assert "scan_clear: never min(scan) < 0.8\n" in text
     assert "stop_off: never stop\n" in text
     assert "count_most" not in text
+
+
+@pytest.mark.parametrize(
+    ("times", "doubt"),
+    [((0, 1, 2), "3 messages are too few to state it."), ((*range(11), 40), "That is too irregular to state it.")],
+)
+def test_a_limit_on_gaps_that_is_only_offered_says_why(
+    times: Sequence[int], doubt: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    message = made("std_msgs/msg/String", data="A")
+    bag = mcap(tmp_path / "drive.mcap", [Sent("/mode", "std_msgs/msg/String", t * 10**8, message) for t in times])
+    assert main(["new", str(bag)]) == 0
+    text = capsys.readouterr().out
+    english = " ".join(
+        text.partition("# There is a message at least every")[2].partition("\n# mode_fresh:")[0].split("\n# ")
+    )
+    assert english.endswith(doubt)
+    assert ("# It never changes.\n" in text) == (len(times) > 10)
 
 
 def test_comments_of_definitions_are_remarks_on_declarations() -> None:

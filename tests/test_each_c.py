@@ -18,9 +18,9 @@ from stepping import from_text
 
 import ltlc
 from ltlc.assurance.c_library import compiler
+from ltlc.assurance.c_programs import c_programs
 from ltlc.assurance.c_table import Table, TableLibrary
 from ltlc.assurance.compiled_program import VERDICTS
-from ltlc.assurance.programs import c_programs
 from ltlc.assurance.reading.c.files import written
 from ltlc.assurance.reading.outcomes import Difference
 from ltlc.assurance.replay import Deviation, Replayed

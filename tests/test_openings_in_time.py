@@ -22,8 +22,8 @@ from stepping import emitted, from_text
 
 from ltlc import cli
 from ltlc.assurance.c_library import Library, compiler
+from ltlc.assurance.c_programs import c_programs
 from ltlc.assurance.compiled_program import VERDICTS
-from ltlc.assurance.programs import c_programs
 from ltlc.assurance.reading.outcomes import Difference, ReadBack
 from ltlc.assurance.replay import Deviation, Replayed
 from ltlc.backends import emit as emit_text

@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable
 from typing import Any
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -13,6 +14,7 @@ from stepping import from_text, ns, session
 
 from ltlc.backends.python.load import load_plan
 from ltlc.runtime import documents, junit, reports
+from ltlc.runtime.properties import Condition
 from ltlc.runtime.rows import ByRows
 from ltlc.runtime.session import Session
 from ltlc.runtime.silence import waiting_for
@@ -404,6 +406,37 @@ def test_strings_booleans_and_arrays_are_sampled_as_they_are() -> None:
 def test_properties_with_the_same_text_are_judged_each() -> None:
     run = feed(session(XY + "never x > 2\nnever x > 2\n"), (0, "/a", 3.0))
     assert [track.verdict for track in run.tracks] == [Verdict.VIOLATED] * 2
+
+
+@given(st.floats(width=32, allow_nan=False))
+def test_a_binary32_is_written_with_digits_that_read_as_the_same_binary32(value: float) -> None:
+    written = float(reports.value_text(value))
+    assert np.float32(written) == np.float32(value)
+    assert len(reports.value_text(value)) <= len(repr(value))
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (float(np.float32(0.3)), "0.3"),
+        (0.3, "0.3"),
+        (0.30000001, "0.30000001"),
+        (float(np.float32(1e-45)), "1e-45"),
+        (16777216.0, "16777216.0"),
+        (1e300, "1e+300"),
+        (-0.0, "-0.0"),
+        ((float(np.float32(0.1)), math.nan, 2), "[0.1, nan, 2]"),
+    ],
+)
+def test_a_number_is_written_as_people_would(value: Any, text: str) -> None:
+    assert reports.value_text(value) == text
+
+
+def test_sides_that_differ_are_never_written_alike() -> None:
+    condition = Condition("d > 0.3", True, float(np.float32(0.3)), 0.3, ">")
+    run = feed(session(XY + "never x > 2\n"))
+    text = reports.condition_text(run.tracks[0].property, condition)
+    assert text == "d > 0.3: true, 0.30000001192092896 > 0.3 by 1.19209e-08"
 
 
 def test_a_long_value_is_cut_in_text() -> None:

@@ -143,7 +143,7 @@ def test_an_interval_ends_after_it_begins(start: int, end: int) -> None:
 
 
 @pytest.mark.parametrize(
-    ("duration", "text"), [(0, "0 s"), (1, "1 ns"), (1500 * 10**6, "1500 ms"), (120 * S, "2 min"), (3600 * S, "1 h")]
+    ("duration", "text"), [(0, "0 s"), (1, "1 ns"), (1500 * 10**6, "1.5 s"), (120 * S, "2 min"), (3600 * S, "1 h")]
 )
-def test_a_duration_is_written_in_the_largest_unit_that_needs_no_decimals(duration: int, text: str) -> None:
+def test_a_duration_is_written_with_decimals_rather_than_more_than_three_digits(duration: int, text: str) -> None:
     assert duration_text(duration) == text

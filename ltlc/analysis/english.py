@@ -12,7 +12,17 @@ from ltlc.semantics.durations import Nanoseconds, duration_text
 from ltlc.semantics.encodings import reads_time
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.properties import Property
-from ltlc.semantics.timed_atoms import Age, Historically, News, Occurred, Once, Previously, Since
+from ltlc.semantics.timed_atoms import (
+    Age,
+    Historically,
+    News,
+    Occurred,
+    Once,
+    Previously,
+    Since,
+    atoms_within,
+    messages_of,
+)
 from ltlc.specification.atoms import Atom
 from ltlc.specification.expressions import IsTrue, New, Relation, openings, operands
 from ltlc.specification.specification import Instances, PropertySpecification, Slicing
@@ -157,10 +167,16 @@ class English:
                 return self.words_of(self._atoms[atom.name], verb, holds=holds)
 
     def atoms(self) -> list[tuple[str, str]]:
-        """The atoms that the author wrote, as they are written and in words."""
+        """The atoms that the author wrote, as written and in words; an age, not the messages that it counts from."""
         made = isinstance(self._slicing, Instances) and self._slicing.made
-        written = [a for a in self._atoms.values() if not (made and _news_of(a) in made)]
-        return [(as_written(atom.name), self.words_of(atom)) for atom in written]
+        parts = [atom for part in p.predicates(self._property) for atom in atoms_within(part)]
+        hidden = messages_of(parts)
+        written = [a for a in self._atoms.values() if a.name not in hidden and not (made and _news_of(a) in made)]
+        ages = [each for each in dict.fromkeys(parts) if isinstance(each, Age)]
+        return [
+            *((as_written(atom.name), self.words_of(atom)) for atom in written),
+            *((as_written(each.name), self._atom(each, "is", holds=True)) for each in ages),
+        ]
 
     def words_of(self, atom: Atom, verb: str = "is", *, holds: bool = True) -> str:
         """What it means that `atom` holds, or does not; the scope of an instance opens at its message."""

@@ -119,17 +119,18 @@ def _examples(study: Study, subject: Subject, monitor: Monitor) -> dict[Verdict,
     """A run for each verdict that the monitor gives after some step, None where no values are found for one."""
     shown: dict[Verdict, Example | None] = {}
     for verdict, caption in CAPTIONS.items():
-        for word in _telling_first(monitor, _words(subject, monitor, verdict))[:MOST_TRIED]:
+        for word in _telling_first(monitor, _words(study, subject, monitor, verdict))[:MOST_TRIED]:
             shown[verdict] = example_of(study.setting(subject), word, caption, study.verdicts(subject, word))
             if shown[verdict] is not None:
                 break
     return shown
 
 
-def _words(subject: Subject, monitor: Monitor, verdict: Verdict) -> list[Word]:
-    """Short runs after which the monitor gives `verdict`."""
+def _words(study: Study, subject: Subject, monitor: Monitor, verdict: Verdict) -> list[Word]:
+    """Short runs after which the monitor gives `verdict`; that `new s` is a message on s matters to their values."""
     monitored = [(subject.formula, monitor)]
-    found = all_shortest(monitored, subject.alphabet, lambda verdicts: verdicts[0] is verdict, subject.shut)
+    alphabet = study.letters.alphabet(atom.name for atom in subject.specification.atoms)
+    found = all_shortest(monitored, alphabet, lambda verdicts: verdicts[0] is verdict, subject.shut)
     return list(islice(found, MOST_WORDS))
 
 

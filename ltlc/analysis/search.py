@@ -303,10 +303,11 @@ class _Search:
         edges = [program.edges[each.state] for program, each in zip(self._programs, running, strict=True)]
         closed = (program.closed[each.state] for program, each in zip(self._programs, running, strict=True))
         alphabet = self._shut.get(frozenset(chain.from_iterable(closed)), self._alphabet)
-        for answers in _ways(self._programs, edges, {}, late):
+        heard = {name: name in messages for name in self._messages[-1]}
+        for answers in _ways(self._programs, edges, heard, late):
             letter = alphabet.completed(answers)
             if letter is not None:
-                yield letter | messages
+                yield letter
 
 
 def _outcome(program: TimedMonitor, target: int, letter: Letter, late: set[int]) -> Outcome:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from typing import Any
 
 from ltlc.assurance.certify import NotCertified
 from ltlc.assurance.cross_check import cross_check
@@ -124,20 +125,47 @@ def _judge_each(
     budget: Budget,
     watch: Watch | None,
 ) -> dict[int, Judgement | Exceeded]:
-    """The judgement of each of `subjects`, by its number."""
-    jobs = [partial(judge, subject, messages) for subject in subjects.values()]
-    return dict(zip(subjects, run_all(jobs, budget, watch=watch), strict=True))
+    """The judgement of each of `subjects`, by its number: its monitor and its code as jobs of their own."""
+    jobs = [partial(half, subject, messages) for subject in subjects.values() for half in (_of_monitor, _of_code)]
+    halves = iter(run_all(jobs, budget, watch=watch and partial(_halved, watch)))
+    return {number: _joined(next(halves), next(halves)) for number in subjects}
+
+
+def _halved(watch: Watch, done: int, jobs: int) -> None:
+    """Count properties rather than jobs."""
+    watch(done // 2, jobs // 2)
+
+
+def _joined(of_monitor: Any, of_code: Any) -> Judgement | Exceeded:
+    for half in (of_monitor, of_code):
+        if isinstance(half, Exceeded):
+            return half
+    return Judgement(**of_monitor, **of_code)
 
 
 def judge(subject: Subject, messages: Messages) -> Judgement:
     """The judgement of one property, in this process."""
+    return Judgement(**_of_monitor(subject, messages), **_of_code(subject, messages))
+
+
+def _of_monitor(subject: Subject, messages: Messages) -> dict[str, Any]:
+    """What is judged of a property before there is any code."""
+    compiled = subject.compiled
+    return {
+        "certificate": checked_certificate(compiled),
+        "alphabet": foresight(compiled, _samples(compiled, messages)),
+        "cross_check": cross_check(compiled),
+        "machine": compare(compiled.machine, Judged(compiled.specification, compiled.formula, compiled.monitor)),
+    }
+
+
+def _of_code(subject: Subject, messages: Messages) -> dict[str, Any]:
+    """What is judged of its code, run and read."""
     compiled, program, written = subject.compiled, subject.program, subject.written
-    samples = Samples(without_news(compiled.specification), read(compiled.specification, messages))
-    return Judgement(
-        checked_certificate(compiled),
-        foresight(compiled, samples),
-        cross_check(compiled),
-        None if program is None else replay(compiled, program.start, program.runs(compiled, samples)),
-        written if written is None or isinstance(written, Difference) else written.read_back(),
-        compare(compiled.machine, Judged(compiled.specification, compiled.formula, compiled.monitor)),
-    )
+    replayed = program and replay(compiled, program.start, program.runs(compiled, _samples(compiled, messages)))
+    read_back = written if written is None or isinstance(written, Difference) else written.read_back()
+    return {"replay": replayed, "reading": read_back}
+
+
+def _samples(compiled: Compiled, messages: Messages) -> Samples:
+    return Samples(without_news(compiled.specification), read(compiled.specification, messages))

@@ -7,26 +7,17 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from types import ModuleType
-from typing import Any, Protocol, TypeVar
+from typing import Any, Protocol
 
-from ltlc.assurance.c_library import Library, compiler
-from ltlc.assurance.c_program import CProgram
-from ltlc.assurance.c_table import TableLibrary, TableProgram
-from ltlc.assurance.compiled_program import Libraries
 from ltlc.assurance.courses import Courses
 from ltlc.assurance.instance_traffic import InstanceTraffic
-from ltlc.assurance.library import Loaded
 from ltlc.assurance.messages import Messages
 from ltlc.assurance.replay import Run, Shown, Stepper, settled
-from ltlc.assurance.rust_library import RustLibrary
-from ltlc.assurance.rust_library import compiler as rust_compiler
 from ltlc.assurance.sliced_traffic import SlicedTraffic
 from ltlc.assurance.sources import given
 from ltlc.assurance.timed_program import TimedClass
 from ltlc.assurance.traffic import Begun, Event, Heard, Passed, Quiet, Said, Settings, Together, Traffic
 from ltlc.assurance.values import RATE, Frame, Samples
-from ltlc.backends import rust
-from ltlc.backends.c import Files, emit
 from ltlc.backends.python import standalone_classes
 from ltlc.compiler import Compiled
 from ltlc.semantics.instants import Instant
@@ -34,9 +25,6 @@ from ltlc.semantics.timed_atoms import timed_atoms
 from ltlc.specification.expressions import Current, Input, New, Signal
 from ltlc.specification.shapes import Shape
 from ltlc.specification.specification import Instances, Slicing, Specification
-
-Text = TypeVar("Text")
-"""What is emitted for a compiled language."""
 
 
 class Program(Protocol):
@@ -75,65 +63,6 @@ def programs(
             return [Monitored(node, number, settings, messages) for number in range(len(compiled))]
         case _:
             return None
-
-
-def c_programs(
-    files: Files, compiled: Sequence[Compiled], specification: Specification, messages: Messages
-) -> Sequence[Program] | None:
-    """For each property the program that its part of emitted C is; None if there is no C compiler."""
-    path = compiler()
-    if path is None:
-        return None
-
-    def written(some: Sequence[Compiled], of: Specification) -> Files:
-        return emit(some, of, files.stem)
-
-    def of_table(libraries: Libraries, number: int, text: Files) -> Program:
-        return TableProgram(libraries, number, text, messages)
-
-    if files.table is not None:
-        return _in_libraries(files, compiled, specification, written, lambda of: TableLibrary(of, path), of_table)
-    return _in_libraries(files, compiled, specification, written, lambda of: Library(of, path), CProgram)
-
-
-def rust_programs(
-    file: rust.File, compiled: Sequence[Compiled], specification: Specification
-) -> Sequence[Program] | None:
-    """For each property the program that its part of emitted Rust is; None if there is no compiler for it."""
-    path = rust_compiler()
-    if path is None:
-        return None
-
-    def program(libraries: Libraries, number: int, text: rust.File) -> Program:
-        return CProgram(libraries, number, text.c)
-
-    return _in_libraries(file, compiled, specification, rust.file_of, lambda of: RustLibrary(of, path), program)
-
-
-def _in_libraries(
-    text: Text,
-    compiled: Sequence[Compiled],
-    specification: Specification,
-    written: Callable[[Sequence[Compiled], Specification], Text],
-    loaded: Callable[[Text], Loaded],
-    program: Callable[[Libraries, int, Text], Program],
-) -> Sequence[Program]:
-    """The programs in the library of `text`, and in those of what is written for other settings.
-
-    A timeout begins with the first step of any property, which the replay of one does not see: each is alone then.
-    """
-    if specification.timeout is not None and len(compiled) > 1:
-        alone = ([each] for each in compiled)
-        parts = ((written(one, specification), one) for one in alone)
-        return [p for of, one in parts for p in _in_libraries(of, one, specification, written, loaded, program)]
-    own = Settings(specification.rate, specification.timeout)
-
-    def library(settings: Settings) -> Loaded:
-        changed = replace(specification, rate=settings.rate, timeout=settings.timeout)
-        return loaded(text if settings == own else written(compiled, changed))
-
-    made = Libraries(library, own)
-    return [program(made, number, text) for number in range(len(compiled))]
 
 
 def _told(compiled: Compiled) -> list[Input]:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import re
+import struct
 from collections.abc import Sequence
-from math import isfinite
+from math import inf, isfinite
 
 from ltlc.runtime.properties import (
     Condition,
@@ -46,16 +47,43 @@ LONGEST = 200
 
 
 def value_text(value: Value) -> str:
-    """A value as the property language writes it; a double exactly, an array cut."""
+    """A value as the property language writes it; an array cut.
+
+    A double exactly; one that is a binary32 with the fewest digits that say which.
+    """
     if value is None:
         return "no value"
     if isinstance(value, bool):
         return "true" if value else "false"
+    if isinstance(value, float):
+        return repr(_shortest(value))
     if not isinstance(value, (tuple, str)):
         return repr(value)
     shown = value[:LONGEST]
-    text = repr(shown) if isinstance(shown, str) else f"[{', '.join(map(repr, shown))}]"
+    is_text = isinstance(shown, str)
+    text = repr(shown) if is_text else f"[{', '.join(map(_item_text, shown))}]"
     return text if len(value) <= LONGEST else f"{text}... ({len(value)} in all)"
+
+
+def _item_text(item: Value) -> str:
+    return repr(_shortest(item) if isinstance(item, float) else item)
+
+
+def _shortest(value: float) -> float:
+    """The double with the fewest digits that is nearest to the same binary32."""
+    if not isfinite(value) or _single(value) != value:
+        return value
+    rounded = (float(f"{value:.{digits}g}") for digits in range(1, 10))
+    return next(number for number in rounded if _single(number) == value)
+
+
+def _single(value: float) -> float:
+    """The nearest binary32."""
+    try:
+        nearest: float = struct.unpack("<f", struct.pack("<f", value))[0]
+    except OverflowError:
+        return inf
+    return nearest
 
 
 def figure(session: Session, track: Track) -> str:
@@ -125,6 +153,8 @@ def condition_text(property_: MonitoredProperty, condition: Condition) -> str:
 def _compared(property_: MonitoredProperty, condition: Condition) -> str:
     left, right = value_text(condition.left), value_text(condition.right)
     difference = distance(condition)
+    if left == right and difference:
+        left, right = repr(condition.left), repr(condition.right)
     by = f" by {difference:.6g}" if difference else ""
     if condition.relation in _OPPOSITES:
         is_so, relation = condition.holds, condition.relation

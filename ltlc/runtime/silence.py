@@ -34,9 +34,10 @@ def beginning(session: Session, track: Track) -> str:
     pairs = zip(track.property.inputs, track.property.waits, strict=True)
     waited = (i for i, waits in pairs if waits and not isinstance(i, New))
     read = (r.topic for i in waited for r in _readings(session, i.signal))
-    spoke = [topic for topic in dict.fromkeys(read) if topic not in track.skipped]
-    when = f", when {' and '.join(spoke)} first spoke" if spoke else ""
-    return f"began at {session.scale.text(track.began)}{when}"
+    last = [topic for topic in dict.fromkeys(read) if topic not in track.skipped]
+    messages = f"message{'s' if len(last) > 1 else ''} on {' and '.join(last)}"
+    after = f", after the first {messages}" if last else ""
+    return f"began at {session.scale.text(track.began)}{after}"
 
 
 def absent(session: Session, name: str) -> list[Reading]:

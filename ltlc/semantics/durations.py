@@ -19,16 +19,14 @@ UNITS: dict[str, Nanoseconds] = {
 
 
 def duration_text(duration: Nanoseconds) -> str:
-    """`duration` as the language writes it, in the largest unit that needs no decimals: `1500 ms`, `2 min`."""
+    """`duration` exactly, as the language writes it, with decimals if a whole number would have more than three digits.
+
+    Full seconds need none: `1.5 s`, `12.4 ms`, `50 ms`, `2 min`.
+    """
     unit = next((u for u in reversed(UNITS) if duration % UNITS[u] == 0), "ns") if duration else "s"
-    return f"{duration // UNITS[unit]} {unit}"
-
-
-def readable(duration: Nanoseconds) -> str:
-    """`duration` exactly, with decimals where that is easier to read: `1.5 s`, `12.4 ms`, `50 ms`, `2 min`."""
-    written = duration_text(duration)
-    if duration % UNITS["s"] == 0 or len(written.partition(" ")[0]) <= 3:
-        return written
+    whole = duration // UNITS[unit]
+    if duration % UNITS["s"] == 0 or whole < 1000:
+        return f"{whole} {unit}"
     unit = next(unit for unit in ("s", "ms", "us") if duration >= UNITS[unit])
     return f"{Decimal(duration) / UNITS[unit]:f} {unit}"
 

@@ -44,11 +44,11 @@ _UNMEASURED = (
 _MEASURED = (
     "All numbers were measured there. Limits leave room and are rounded outwards: {room:.0%} on values, a factor of "
     "{factor} on times. Change what does not fit, and take the `#` off what does. A `?` behind a `#` is a "
-    "number that this recording does not tell: `ltlc mine` finds it in others."
+    "number that is not in this recording: `ltlc mine` finds it in others."
 )
 _OF_BAG = (
-    " Some of its message types are known from the bag alone: `ltlc check --recording {bag}` and "
-    "`ltlc build --msg-path {bag}` know them, too."
+    " Some message types are defined in the bag alone: `--msg-path {bag}` gives them to `ltlc check`, `explain` and "
+    "`build`."
 )
 _WORDS = frozenset(
     [*KEYWORDS, *CONTEXTUAL, *RESERVED, *FUNCTIONS, *QUANTIFIERS, *UNITS, *FOREIGN_WORDS, "opening"]
@@ -83,6 +83,11 @@ class Draft:
     def is_empty(self) -> bool:
         """Whether nothing can be said of any topic."""
         return not self._subjects
+
+    @property
+    def omitted(self) -> list[str]:
+        """Each topic of which nothing can be said, and why."""
+        return [f"{topic.name} [{topic.type}]: {why}" for topic, why in self._left_out]
 
     @property
     def declarations(self) -> str:

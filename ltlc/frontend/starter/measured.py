@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from decimal import Decimal
 
-from ltlc.semantics.durations import Nanoseconds, readable
+from ltlc.semantics.durations import Nanoseconds, duration_text
 from ltlc.specification.text import outwards
 from ltlc.specification.wire import DOUBLES, Kind, Numbers
 
@@ -118,4 +118,4 @@ def time_limit(measured: Nanoseconds, least: Nanoseconds) -> Nanoseconds:
 
 def duration(time: Nanoseconds) -> str:
     """A duration to three digits."""
-    return readable(round(time, -max(0, len(str(time)) - 3)))
+    return duration_text(round(time, -max(0, len(str(time)) - 3)))

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from textwrap import wrap
 
 from ltlc.base.source import quoted
-from ltlc.frontend.starter.measured import Arrivals, Measured, Probe, Values, duration, time_limit
+from ltlc.frontend.starter.measured import LEAST_REGULAR, Arrivals, Measured, Probe, Values, duration, time_limit
 from ltlc.frontend.starter.recipes import Recipe, Rule
 from ltlc.semantics.durations import UNITS
 
@@ -108,7 +108,8 @@ class Subject:
         if came.usual:
             remark = f"Usually one came every {duration(came.usual)}; the longest gap was {duration(came.gap)}."
             fresh = FRESH_LATER if is_late else FRESH
-            yield self._line(fresh, duration(gap), is_offered=not came.are_regular, remark=remark)
+            doubt = "" if came.are_regular else f" {_doubt(came)}"
+            yield self._line(fresh, duration(gap), is_offered=not came.are_regular, remark=remark + doubt)
         if came.are_regular and came.fewest * 4 // 5 >= LEAST_RATE:
             yield self._rate(came, came.fewest * 4 // 5)
 
@@ -156,4 +157,11 @@ class Subject:
         ):
             label = f"{suffix}_known".lstrip("_")
             listed = ", ".join(sorted(quoted(str(each)) for each in found.different))
-            yield Line(label, "It is what it was in the recording.", f"always {name} in {{{listed}}}")
+            english = "It is one of those in the recording." if len(found.different) > 1 else "It never changes."
+            yield Line(label, english, f"always {name} in {{{listed}}}")
+
+
+def _doubt(came: Arrivals) -> str:
+    """Why messages are not taken for a stream."""
+    few = came.count < LEAST_REGULAR
+    return f"{came.count} messages are too few to state it." if few else "That is too irregular to state it."

@@ -12,7 +12,7 @@ from ltlc.base.codes import diagnostic
 from ltlc.base.diagnostics import Diagnostic
 from ltlc.base.source import Source
 from ltlc.runtime.sampling import Value
-from ltlc.runtime.times import SECOND, nanoseconds, seconds_text
+from ltlc.runtime.times import SECOND, nanoseconds, seconds_text, span_text
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.specification.expressions import ValueType
 from ltlc.specification.wire import DOUBLES, Kind, Numbers
@@ -39,13 +39,16 @@ def failure(code: str, path: Path, message: str, help: str = "") -> RecordingErr
     return RecordingError(diagnostic(code, Source(str(path), ""), None, message, help=help))
 
 
-def outside(path: Path, is_before: bool) -> RecordingError:
-    """An error about a recording that has nothing between `--from` and `--until`: it ends before, or begins after."""
-    which = "ends before the time of `--from`" if is_before else "begins after the time of `--until`"
-    help = (
-        f"give a time of the recording's clock, or `{'--from' if is_before else '--until'} +10`: 10 s after it begins"
-    )
-    return failure("LTL804", path, f"the recording {which}", help)
+def outside(path: Path, first: Nanoseconds, last: Nanoseconds | None) -> RecordingError:
+    """An error about a recording that has nothing between `--from` and `--until`.
+
+    It begins at `first` and ends at `last`, before `--from`; if `last` is None, it begins after `--until`.
+    """
+    option, which = ("--until", "begins after") if last is None else ("--from", "ends before")
+    message = f"the recording {which} the time of `{option}`: it begins at {seconds_text(first)} s"
+    lasts = "" if last is None else f" and lasts {span_text(last - first)}"
+    help = f"give a time of its clock, or one since its beginning with `+`, such as `{option} +0.5`"
+    return failure("LTL804", path, f"{message}{lasts}", help)
 
 
 LONGEST_GAP = 366 * 86_400 * SECOND

@@ -10,12 +10,11 @@ from typing import Protocol
 
 from ltlc import backends
 from ltlc.assurance.messages import Messages
-from ltlc.assurance.programs import Monitored, Program, c_programs, programs, rust_programs
+from ltlc.assurance.programs import Monitored, Program, programs
 from ltlc.assurance.reading.files import READABLE, written
 from ltlc.assurance.reading.outcomes import Difference, Written
-from ltlc.assurance.reading.rust import written as written_in_rust
 from ltlc.assurance.told_runs import told_runs
-from ltlc.backends import ament, c, rust
+from ltlc.backends import ament
 from ltlc.backends.ament.folder import earlier
 from ltlc.backends.ament.metadata import Metadata
 from ltlc.backends.spelling import NotInTargetError
@@ -129,7 +128,9 @@ class _C:
             refuse_unwritable(path)
 
     def make(self, compiled: Sequence[Compiled], specification: Specification, messages: Messages) -> Made:
-        from ltlc.assurance.reading.c.files import written as written_in_c  # brings pycparser along
+        from ltlc.assurance.c_programs import c_programs  # takes time, as what reads C does
+        from ltlc.assurance.reading.c.files import written as written_in_c
+        from ltlc.backends import c
 
         try:
             files = c.emit(compiled, specification, self.path.stem)
@@ -159,6 +160,10 @@ class _Rust:
         refuse_unwritable(self.path)
 
     def make(self, compiled: Sequence[Compiled], specification: Specification, _: Messages) -> Made:
+        from ltlc.assurance.c_programs import rust_programs  # takes time, as what reads Rust does
+        from ltlc.assurance.reading.rust import written as written_in_rust
+        from ltlc.backends import rust
+
         try:
             file = rust.file_of(compiled, specification)
         except NotInTargetError:

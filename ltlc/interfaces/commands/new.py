@@ -56,7 +56,7 @@ def run(options: argparse.Namespace) -> int:
         return UNUSABLE
     draft = Draft(topics, types)
     if draft.is_empty:
-        return unusable(_nothing(topics))
+        return unusable(_nothing(draft))
     if options.bag is None:
         return _write(draft.text("a list of topics"), options.output)
     try:
@@ -75,11 +75,10 @@ def _topics(bag: Path | None) -> Sequence[Topic]:
     return listed(sys.stdin.read()) if bag is None else recorded(bag)
 
 
-def _nothing(topics: Sequence[Topic]) -> str:
-    if not topics:
-        return "there are no topics"
-    listed = ", ".join(f"{topic.name} [{topic.type}]" for topic in topics[:5])
-    return f"no properties for {listed}{' …' if topics[5:] else ''}: add message definitions with `--msg-path`"
+def _nothing(draft: Draft) -> str:
+    omitted = draft.omitted
+    more = f"\n  and {len(omitted) - 5} more" if omitted[5:] else ""
+    return "\n  ".join(["there is no topic to write properties for", *omitted[:5]]) + more
 
 
 def _write(text: str, path: Path | None) -> int:
@@ -90,4 +89,5 @@ def _write(text: str, path: Path | None) -> int:
         write_text(path, text)
     except OSError as error:
         return unwritable(path, error)
+    print(f"wrote {path}")
     return OK

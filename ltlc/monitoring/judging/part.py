@@ -37,7 +37,7 @@ class Part:
     def blocks(self) -> Iterator[Block]:
         """The rows. Raises RecordingError, also if all others are before these, or after."""
         before = after = False
-        judged = 0
+        judged = last = 0
         for block in self._recording.blocks():
             if self.beginning is None and len(block.times):
                 self._begin(int(block.times[0]))
@@ -45,12 +45,14 @@ class Part:
             judged += len(of.times)
             yield of
             if len(of.times) < len(block.times):
+                last = int(block.times[-1])
                 before |= self.since is not None and bool(block.times[0] < self.since)
                 after |= self.until is not None and bool(block.times[-1] > self.until)
             if after:
                 break
         if not judged and before != after:
-            raise outside(self._path, is_before=before)
+            assert self.beginning is not None
+            raise outside(self._path, self.beginning, last if before else None)
 
     def remarks(self) -> list[Diagnostic]:
         """That the time of `--from` is one before the recording, so that nothing was left out."""

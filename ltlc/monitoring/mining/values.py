@@ -15,7 +15,7 @@ from math import inf
 from ltlc.frontend.language.durations import LONGEST
 from ltlc.frontend.language.parameters import Role
 from ltlc.monitoring.mining.monotone import STRONGER, WEAKER
-from ltlc.semantics.durations import UNITS, Nanoseconds, readable, seconds_text
+from ltlc.semantics.durations import UNITS, Nanoseconds, duration_text, seconds_text
 from ltlc.specification.text import number_text, outwards
 from ltlc.specification.wire import DOUBLES, EXACT, Kind, Numbers
 
@@ -54,7 +54,7 @@ class Values:
     def text(self, number: int) -> str:
         """The value with that number as the language writes it, which reads as exactly that."""
         if self.numbers is None:
-            return readable(self._rank(number))
+            return duration_text(self._rank(number))
         return number_text(self.numbers.at(self._rank(number)), self.numbers.kind is Kind.SINGLE)
 
     def rounded(self, number: int) -> int:

@@ -24,6 +24,7 @@ from ltlc.inputs.recordings.blocks import Block
 from ltlc.inputs.recordings.fence import fenced
 from ltlc.inputs.recordings.reading import ReadOptions, Stamp
 from ltlc.inputs.recordings.rows import RecordingError, failure, outside
+from ltlc.runtime.reports import counted
 from ltlc.runtime.times import NEVER, seconds_text
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.specification.expressions import Signal
@@ -110,17 +111,21 @@ class BagRecording:
             if reader.unstamped:
                 message = f"{reader.unstamped} messages on `{topic}` were skipped: the time in their headers is 0"
                 found.append(self._remark("LTL815", message, "judge by the time of recording: `--stamp log`"))
-        for topic, seen in self._merger.disorders.items():
+        return [*found, *self._about_times()]
+
+    def _about_times(self) -> Iterator[Diagnostic]:
+        """Messages that were recorded late, and those at the same time as another of their topic."""
+        together: list[str] = []
+        for topic, seen in sorted(self._merger.disorders.items()):
             if seen.late:
                 by = f"by at most {seconds_text(seen.most)} s"
-                message = f"{seen.late} messages on `{topic}` were recorded late, {by}, and sorted by time"
-                found.append(self._remark("LTL814", message, ""))
+                message = f"{counted(seen.late, 'message')} on `{topic}` came late, {by}: sorted by time"
+                yield self._remark("LTL814", message, "")
             if seen.together > 0:
-                message = (
-                    f"{seen.together} messages on `{topic}` have the same time as the previous one: each is a step"
-                )
-                found.append(self._remark("LTL814", message, ""))
-        return found
+                together.append(f"{seen.together if together else counted(seen.together, 'message')} on `{topic}`")
+        if together:
+            message = f"{', '.join(together)} came at the same time as the previous one: each is a step"
+            yield self._remark("LTL814", message, "")
 
     def _about_definitions(self) -> Iterator[Diagnostic]:
         """Topics that are read by definitions that are not the recording's, and fields that others define otherwise."""
@@ -132,7 +137,7 @@ class BagRecording:
                 undefined.setdefault(origin, []).append(f"`{topic}`")
         for origin, topics in sorted(undefined.items()):
             own = self._distribution and distribution_name(self._distribution)
-            why = f"it was recorded with {own}" if own else "it does not say which ROS recorded it"
+            why = f"the recording is from {own}" if own else "the recording does not name its ROS distribution"
             message = f"the recording does not define all messages on {', '.join(topics)}: {origin} does; {why}"
             help = "" if origin == own else "if these are wrong, give the right ones with `--msg-path DIR`"
             yield self._remark("LTL818", message, help)
@@ -181,10 +186,11 @@ class BagRecording:
         spans = [span for span in self._spans if span is not None]
         if self._limits is not None and spans and len(spans) == len(self._bag.files):
             since, until = self._limits
-            if max(last for _, last in spans) < since:
-                raise outside(self._path, is_before=True)
-            if min(first for first, _ in spans) > until:
-                raise outside(self._path, is_before=False)
+            first, last = min(first for first, _ in spans), max(last for _, last in spans)
+            if last < since:
+                raise outside(self._path, first, last)
+            if first > until:
+                raise outside(self._path, first, None)
 
     @property
     def _extent(self) -> tuple[Nanoseconds, Nanoseconds] | None:
