@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 import pytest
 from bag_support import FORMS, ODOMETRY, STORE, TWIST, Sent, made, mcap, odometry, random_message, ros1, rosbag2
 from mcap.reader import make_reader
+from mcap.records import Chunk
 from mcap.stream_reader import StreamReader
 from rosbags.highlevel import AnyReader  # noqa: TID251
 from test_files import with_little_room
@@ -38,13 +39,13 @@ class Found(NamedTuple):
     data: bytes
 
 
-def drive(seconds: Sequence[float], fast: Sequence[float] = (), **values: float) -> list[Sent]:
+def drive(seconds: Sequence[float], fast: Sequence[float] = ()) -> list[Sent]:
     """Odometry at these times, `fast` at some, and other messages in between."""
     sent = []
     for at in seconds:
         time = BEGAN + round(at * SECOND)
         speed = 3.0 if at in fast else 1.0
-        sent.append(odometry(time, twist__twist__linear__x=speed, **values))
+        sent.append(odometry(time, twist__twist__linear__x=speed))
         sent.append(Sent("/cmd", TWIST, time + 1, made(TWIST)))
     return sent
 
@@ -136,7 +137,7 @@ def test_chunks_inside_the_time_of_an_extract_are_copied_as_they_are(tmp_path: P
 
     def chunks(path: Path) -> list[bytes]:
         records = StreamReader(io.BytesIO(path.read_bytes()), emit_chunks=True).records
-        return [each.data for each in records if type(each).__name__ == "Chunk"]
+        return [each.data for each in records if isinstance(each, Chunk)]
 
     inside = [each for each in chunks(extract) if each in chunks(bag)]
     assert len(inside) == len(chunks(extract)) - 2  # those at its ends have fewer messages
@@ -173,7 +174,9 @@ def test_a_database_without_definitions_has_those_that_it_is_judged_by(tmp_path:
         database.execute("delete from message_definitions")
     extract = copied(bag, BEGAN, BEGAN + SECOND, tmp_path / "extract.mcap")
     with AnyReader([extract]) as reader:
-        read = [reader.deserialize(data, c.msgtype) for c, _, data in reader.messages() if c.topic == "/odom"]
+        read: list[Any] = [
+            reader.deserialize(data, c.msgtype) for c, _, data in reader.messages() if c.topic == "/odom"
+        ]
     assert [each.twist.twist.linear.x for each in read] == [1.0, 1.0]
 
 

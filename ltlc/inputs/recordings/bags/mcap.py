@@ -18,7 +18,6 @@ from ltlc.inputs.recordings.bags.mcap_chunks import Chunks
 from ltlc.inputs.recordings.bags.mcap_records import (
     MESSAGE_HEAD,
     Channel,
-    ChunkIndex,
     Contents,
     DamageError,
     Schema,
@@ -27,7 +26,7 @@ from ltlc.inputs.recordings.bags.mcap_records import (
 from ltlc.inputs.recordings.bags.mcap_summary import summary
 from ltlc.inputs.recordings.bags.messages import LATEST, Batch, Room, Topic, batch_of, span_of
 from ltlc.inputs.recordings.rows import RecordingError, failure
-from ltlc.runtime.mcap import MAGIC
+from ltlc.runtime.mcap import MAGIC, ChunkIndex
 from ltlc.semantics.durations import Nanoseconds
 
 ENOUGH = 1 << 22

@@ -7,10 +7,21 @@ from io import BufferedReader
 from pathlib import Path
 from typing import NamedTuple
 
-from ltlc.inputs.recordings.bags.chunked import ENOUGH, Message, Whole
+from ltlc.inputs.recordings.bags.chunked import Message, Whole
 from ltlc.inputs.recordings.bags.compressed import is_packed
-from ltlc.inputs.recordings.bags.mcap_records import CHUNK_HEAD, ChunkIndex, Contents, DamageError, messages_in, opened
-from ltlc.runtime.mcap import CHUNK, DATA_END, HEAD, HEADER, MAGIC, MESSAGE, MESSAGE_HEAD
+from ltlc.inputs.recordings.bags.mcap_records import Contents, DamageError, messages_in, opened
+from ltlc.runtime.mcap import (
+    CHUNK,
+    CHUNK_HEAD,
+    DATA_END,
+    ENOUGH_FOR_A_CHUNK,
+    HEAD,
+    HEADER,
+    MAGIC,
+    MESSAGE,
+    MESSAGE_HEAD,
+    ChunkIndex,
+)
 from ltlc.semantics.durations import Nanoseconds
 
 
@@ -82,7 +93,7 @@ def _scanned(file: BufferedReader) -> Iterator[Piece]:
         start = file.tell()
         head = file.read(HEAD.size + max(CHUNK_HEAD.size, MESSAGE_HEAD.size))
         opcode, length = HEAD.unpack_from(head) if len(head) >= HEAD.size else (DATA_END, 0)
-        if run is not None and (opcode != MESSAGE or run.length >= ENOUGH):
+        if run is not None and (opcode != MESSAGE or run.length >= ENOUGH_FOR_A_CHUNK):
             yield run
             run = None
         if opcode in (DATA_END, 0):

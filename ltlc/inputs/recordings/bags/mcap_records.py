@@ -13,7 +13,7 @@ import numpy as np
 
 from ltlc.inputs.recordings.bags.messages import LARGEST
 from ltlc.inputs.recordings.blocks import Array
-from ltlc.runtime.mcap import CHANNEL, CHUNK, DATA_END, HEAD, MAGIC, MESSAGE, SCHEMA
+from ltlc.runtime.mcap import CHANNEL, CHUNK, CHUNK_HEAD, DATA_END, HEAD, MAGIC, MESSAGE, SCHEMA, ChunkIndex
 from ltlc.semantics.durations import Nanoseconds
 
 MESSAGE_HEAD = struct.Struct("<HIqq")
@@ -21,10 +21,6 @@ MESSAGE_HEAD = struct.Struct("<HIqq")
 
 The times are without a sign in the file: one that is below 0 here is one that no clock shows.
 """
-
-CHUNK_HEAD = struct.Struct("<QQQII")
-"""A chunk's first and last time, size, checksum (0 is none), and the length of the name of its compression."""
-
 
 _OF_USE = {SCHEMA, CHANNEL, MESSAGE, CHUNK}
 _CUT_OFF = "it is cut off, as if the recorder was killed"
@@ -45,23 +41,6 @@ class Schema(NamedTuple):
     name: str
     form: str
     text: bytes
-
-
-class ChunkIndex(NamedTuple):
-    """A chunk: its first and last time, which bytes of the file it is, what compresses it, and its size unpacked.
-
-    Behind it lie `index_length` bytes, in which the index of the messages of each channel is at the place in the file
-    that `indexes` has; without `indexes` there is none.
-    """
-
-    first: Nanoseconds
-    last: Nanoseconds
-    start: int
-    length: int
-    indexes: dict[int, int]
-    index_length: int
-    compression: bytes
-    size: int
 
 
 class DamageError(Exception):

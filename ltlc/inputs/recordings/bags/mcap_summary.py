@@ -5,9 +5,9 @@ from __future__ import annotations
 import struct
 from io import SEEK_END, BufferedReader
 
-from ltlc.inputs.recordings.bags.mcap_records import ChunkIndex, Contents
+from ltlc.inputs.recordings.bags.mcap_records import Contents
 from ltlc.inputs.recordings.bags.messages import LARGEST, span_of
-from ltlc.runtime.mcap import CHANNEL, CHUNK_INDEX, FOOTER, HEAD, MAGIC, SCHEMA, STATISTICS
+from ltlc.runtime.mcap import CHANNEL, CHUNK_INDEX, FOOTER, HEAD, MAGIC, SCHEMA, STATISTICS, ChunkIndex
 
 _FOOTER = struct.Struct("<QQI")
 _CHUNK_INDEX = struct.Struct("<QQQQI")
