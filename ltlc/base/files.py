@@ -11,7 +11,7 @@ from contextlib import contextmanager, suppress
 from errno import EACCES, EISDIR
 from pathlib import Path
 from stat import S_IMODE
-from typing import Any
+from typing import Any, BinaryIO
 
 _NO_FILE = "it is not a file"
 
@@ -76,6 +76,22 @@ def write_bytes(path: Path, content: bytes, permissions: int | None = None) -> N
     """Write `content` to `path`, as `write_text` does, with these `permissions` if they are given."""
     temporary = _written_aside(path, content, permissions)
     try:
+        os.replace(temporary, path)
+    except BaseException:
+        os.unlink(temporary)
+        raise
+
+
+@contextmanager
+def written(path: Path) -> Iterator[BinaryIO]:
+    """A file that becomes the one at `path` once all of it has been written; otherwise nothing is left behind.
+
+    Raises OSError.
+    """
+    temporary = _written_aside(path, b"")
+    try:
+        with open(temporary, "wb") as file:
+            yield file
         os.replace(temporary, path)
     except BaseException:
         os.unlink(temporary)

@@ -18,7 +18,7 @@ from typing import Any
 from ltlc.compiler import Compiled
 from ltlc.monitoring.letters import Letters
 from ltlc.runtime.courses import Course
-from ltlc.runtime.episodes import Episodes
+from ltlc.runtime.episodes import Episodes, latest
 from ltlc.runtime.properties import Failure, Moment, Monitor, MonitoredProperty
 from ltlc.runtime.reasons import Before
 from ltlc.runtime.sampling import New, Value
@@ -34,9 +34,13 @@ MOST = 1000
 
 @dataclass(slots=True)
 class Violation:
-    """A property is violated at a moment, and `until` then; None if it still was when the run ended."""
+    """A property is violated at a moment, and `until` then; None if it still was when the run ended.
+
+    It goes back to the time `cause`, when its episode opened, or from when on something was owed.
+    """
 
     moment: Moment
+    cause: Nanoseconds
     until: Nanoseconds | None = None
 
     def lasted(self, end: Nanoseconds) -> Nanoseconds:
@@ -66,7 +70,7 @@ class Later(Course):
         super().__init__(track.property, Counter(), first.time)
         self._keep_ages(track.monitor)
         self.steps, self.judged_on = track.steps, track.judged_on
-        self.violations = [Violation(_moment(first))]
+        self.violations = [violation_at(first)]
         self.is_out, self.is_stuck = True, False
         self._last = self._renewed_at = first.time
         self._began = NEVER
@@ -172,7 +176,7 @@ class Later(Course):
         if self.is_out:
             self._last = time
             if last.until is not None and self.decided_at is not None:
-                self.violations.append(Violation(_moment(self.decided_at)))
+                self.violations.append(violation_at(self.decided_at))
             if len(self.violations) < MOST:
                 self.decided_at = None  # it goes on
         elif self.verdict is not Verdict.PRESUMABLY_VIOLATED and last.until is None:
@@ -180,12 +184,16 @@ class Later(Course):
         return self.is_out
 
     def _failure(self, before: Before, moment: Moment, values: Sequence[Value]) -> Failure:
-        """Of later violations no more is kept than when they are."""
-        return Failure(moment.step, moment.time, (), (), None, (), by_time=moment.by_time)
+        """Of later violations no more is kept than when they are, and since when."""
+        since, opened = self.open_since, latest(self.scopes)
+        return Failure(moment.step, moment.time, (), (), since, opened, by_time=moment.by_time)
 
 
-def _moment(failure: Failure) -> Moment:
-    return Moment(failure.step, failure.time, by_time=failure.by_time)
+def violation_at(failure: Failure) -> Violation:
+    """The violation that a property, or a slice of it, was decided by."""
+    causes = (failure, *failure.opened, *filter(None, (failure.open_since,)))
+    moment = Moment(failure.step, failure.time, by_time=failure.by_time)
+    return Violation(moment, min(cause.time for cause in causes))
 
 
 class JudgedTrack(RecordedTrack):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from functools import lru_cache
 
 from ltlc.inputs.messages.definitions import PLACEHOLDER, STRINGS, Constant, FieldType, Message
@@ -51,6 +51,25 @@ def defined(type_: str, form: str, text: str) -> dict[str, Message]:
         case "ros2idl" | "omgidl" if text.strip():
             return _from_idl(text)
     return {}
+
+
+def text_of(type_: str, types: Mapping[str, Message]) -> str:
+    """A text in the form `ros2msg` that defines `type_` and what it contains, without constants and defaults."""
+    sections, todo = [], [type_]
+    for name in todo:
+        fields = {} if types[name].fields == _EMPTY else types[name].fields
+        lines = [f"{_short(str(of))} {field}\n" for field, of in fields.items()]
+        sections.append("".join(lines) or "# no fields\n")
+        todo += [
+            base for base in dict.fromkeys(of.base for of in fields.values()) if base in types and base not in todo
+        ]
+    heads = ["", *(f"{'=' * 80}\nMSG: {_short(name)}\n" for name in todo[1:])]
+    return "".join(head + section for head, section in zip(heads, sections, strict=True))
+
+
+def _short(name: str) -> str:
+    """As packages write the name of a type: `nav_msgs/Odometry`."""
+    return name.replace("octet", "byte").replace("/msg/", "/")
 
 
 def _messages(name: str, text: str) -> dict[str, Message]:

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import argparse
+import re
+from decimal import Decimal
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ltlc.semantics.durations import UNITS, Nanoseconds
 from ltlc.semantics.encodings import ENCODINGS
 
 if TYPE_CHECKING:
@@ -138,6 +141,15 @@ def time(text: str) -> Limit:
         help = calendar_help(text)
         message = f"{text!r} is not a time in seconds, such as 12.5 or +12.5{f': {help}' if help else ''}"
         raise argparse.ArgumentTypeError(message) from None
+
+
+def duration(text: str) -> Nanoseconds:
+    """A duration with a unit, or in seconds: `500ms`, `5 s`, `2`."""
+    match = re.fullmatch(rf"(\d+(?:\.\d+)?) ?({'|'.join(UNITS)})?", text.strip())
+    if match is None:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a duration such as 5s or 500ms")
+    number, unit = match.groups()
+    return round(Decimal(number) * UNITS[unit or "s"])
 
 
 def names(text: str) -> list[str]:

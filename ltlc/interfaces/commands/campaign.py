@@ -29,7 +29,7 @@ from ltlc.monitoring.judging.run import Judge
 
 def run_several(judge: Judge, found: Found, options: argparse.Namespace) -> int:
     """Judge the recordings that were found, each by itself; the exit code is the worst: 2, 1, 3, 0."""
-    for name in ("output", "timing", "all"):
+    for name in ("output", "timing", "all", "cut"):
         if getattr(options, name):
             return unusable(f"--{name} takes a single recording")
     if options.report and (options.results or options.engine):

@@ -15,6 +15,7 @@ from ltlc.base.files import refuse_unwritable, write_all
 from ltlc.inputs.recordings import Block
 from ltlc.interfaces.commands import arguments
 from ltlc.interfaces.commands.common import OK, compile_file, overwritten, refused, report, unusable, unwritable
+from ltlc.interfaces.commands.cutting import add_cut, cut, refuse_cut
 from ltlc.interfaces.commands.progress import saying
 from ltlc.interfaces.commands.watching import add_watch, watched
 from ltlc.monitoring.columns.timing import timing
@@ -57,6 +58,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="write what the verdicts follow from, to be checked by `ltlc certify --evidence`; of several recordings, "
         "with --results, what is missing is appended",
     )
+    add_cut(parser.add_argument_group("extracts"))
     add_watch(parser)
 
 
@@ -82,7 +84,7 @@ def _add_campaign(group: argparse._ArgumentGroup) -> None:
 def run(options: argparse.Namespace) -> int:
     """Judge once, or whenever a file changes; the exit code."""
     if options.watch:
-        outputs = (options.report, options.output, options.summary, options.results, options.evidence)
+        outputs = (options.report, options.output, options.summary, options.results, options.evidence, options.cut)
         read = [options.specification, *options.recordings, *options.msg_path]
         return watched(_run, options, read, [each for each in outputs if each])
     return _run(options)
@@ -133,6 +135,8 @@ def _run(options: argparse.Namespace) -> int:
         from ltlc.interfaces.commands.campaign import run_several
 
         return run_several(judge, found, options)
+    if options.cut and (code := refuse_cut(paths[0], options)):
+        return code
     return _run_one(judge, Path(options.recordings[0]), options)
 
 
@@ -167,7 +171,10 @@ def _run_one(judge: Judge, path: Path, options: argparse.Namespace) -> int:
         if found.evidence is None:
             return unusable(f"{options.evidence} is not written: not all of the recording could be judged")
         written[options.evidence] = printed(found.evidence).encode()
-    return _write(written, options.quiet) or found.exit_code
+    code = _write(written, options.quiet)
+    if not code and options.cut:
+        code = cut(found, path, options)
+    return code or found.exit_code
 
 
 @contextmanager

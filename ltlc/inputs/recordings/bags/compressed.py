@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 
@@ -50,11 +51,11 @@ def _sizes(messages: Messages) -> Places:
     return np.array([min(_claimed(each), LARGEST) for each in messages.raw()], np.int64)
 
 
-def _claimed(raw: memoryview) -> int:
+def _claimed(raw: bytes | memoryview) -> int:
     """How large a message claims to be when it is decompressed: more than any if it does not say so, or is damaged."""
     import zstandard
 
-    if raw[: len(MAGIC)] != MAGIC:
+    if not is_packed(raw):
         return len(raw)
     try:
         claimed = zstandard.frame_content_size(raw)
@@ -69,17 +70,8 @@ def unpacked(messages: Messages) -> Messages:
         return messages
     import zstandard
 
-    raw = messages.raw()
-    if any(_claimed(each) > LARGEST for each in raw):
-        raise MisfitError
     decompressor = zstandard.ZstdDecompressor()
-    try:
-        data = [
-            decompressor.decompress(each, max_output_size=LARGEST) if each[: len(MAGIC)] == MAGIC else each
-            for each in raw
-        ]
-    except (zstandard.ZstdError, MemoryError):
-        raise MisfitError from None
+    data = [message_in(each, decompressor) for each in messages.raw()]
     return batch_of(data, messages.times, messages.places)
 
 
@@ -88,4 +80,24 @@ def _is_packed(messages: Messages) -> bool:
     if not len(messages):
         return False
     start = int(messages.starts[0])
-    return messages.data[start : start + len(MAGIC)].tobytes() == MAGIC
+    return is_packed(messages.data[start : start + len(MAGIC)].tobytes())
+
+
+def is_packed(message: bytes | memoryview) -> bool:
+    """Whether it is compressed."""
+    return message[: len(MAGIC)] == MAGIC
+
+
+def message_in(raw: bytes | memoryview, decompressor: Any) -> bytes | memoryview:
+    """The message that may be compressed, which zstandard's `decompressor` takes. Raises MisfitError."""
+    import zstandard
+
+    if not is_packed(raw):
+        return raw
+    if _claimed(raw) > LARGEST:
+        raise MisfitError
+    try:
+        message: bytes = decompressor.decompress(raw, max_output_size=LARGEST)
+        return message
+    except (zstandard.ZstdError, MemoryError):
+        raise MisfitError from None

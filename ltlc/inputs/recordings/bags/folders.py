@@ -129,13 +129,20 @@ def _unread(folder: Path, name: str) -> Diagnostic:
 @contextmanager
 def opened(path: Path) -> Iterator[Storage]:
     """The storage at `path`; one that is compressed lies in a temporary folder meanwhile. Raises RecordingError."""
+    with unpacked(path) as plain:
+        yield _storage(plain)
+
+
+@contextmanager
+def unpacked(path: Path) -> Iterator[Path]:
+    """The file at `path`; of one that is compressed, one in a temporary folder that is not. Raises RecordingError."""
     if not is_packed(path):
-        yield _storage(path)
+        yield path
         return
     with TemporaryDirectory(prefix="ltlc-") as folder:
-        unpacked = Path(folder) / path.stem
-        _unpack(path, unpacked)
-        yield _storage(unpacked)
+        plain = Path(folder) / path.stem
+        _unpack(path, plain)
+        yield plain
 
 
 def _unpack(path: Path, target: Path) -> None:

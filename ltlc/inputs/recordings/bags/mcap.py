@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import struct
-from collections.abc import Collection, Container, Iterator
+from collections.abc import Callable, Collection, Container, Iterator
 from contextlib import closing
 from functools import partial
 from io import BufferedReader
@@ -16,10 +16,8 @@ from ltlc.inputs.messages.texts import full_name
 from ltlc.inputs.recordings.ahead import each_ahead
 from ltlc.inputs.recordings.bags.mcap_chunks import Chunks
 from ltlc.inputs.recordings.bags.mcap_records import (
-    MAGIC,
     MESSAGE_HEAD,
     Channel,
-    ChunkIndex,
     Contents,
     DamageError,
     Schema,
@@ -28,10 +26,14 @@ from ltlc.inputs.recordings.bags.mcap_records import (
 from ltlc.inputs.recordings.bags.mcap_summary import summary
 from ltlc.inputs.recordings.bags.messages import LATEST, Batch, Room, Topic, batch_of, span_of
 from ltlc.inputs.recordings.rows import RecordingError, failure
+from ltlc.runtime.mcap import MAGIC, ChunkIndex
 from ltlc.semantics.durations import Nanoseconds
 
 ENOUGH = 1 << 22
 """So many bytes of messages are taken together."""
+
+ROS1 = "ros1"
+"""The serialization of messages of ROS 1."""
 
 MOST_AHEAD = 1 << 25
 """Where more bytes are worked on at a time, one thread does it: several would hold several times as many."""
@@ -48,24 +50,29 @@ class McapStorage:
             with path.open("rb") as file:
                 if file.read(len(MAGIC)) != MAGIC:
                     raise failure("LTL811", path, f"`{path}` is not an MCAP file: it does not begin like one")
-                self._contents = summary(file) or self._looked_through(file)
+                self.contents = summary(file) or self._looked_through(file)
         except OSError as error:
             raise failure("LTL902", path, f"`{path}` cannot be read: {error.strerror}") from None
+        self._old: dict[str, tuple[str, str]] = {}
+        self._converters: dict[str, Callable[[memoryview], bytes]] = {}
         self.topics = {name: self._topic(name) for name in dict.fromkeys(c.topic for c in self._channels.values())}
-        self.span = self._contents.span
+        self.span = self.contents.span
 
     @property
     def _channels(self) -> dict[int, Channel]:
-        return self._contents.channels
+        return self.contents.channels
 
     def _topic(self, name: str) -> Topic:
         """A topic of one channel or several; if these differ in type, it is that of all, with commas."""
         numbers = [number for number, channel in self._channels.items() if channel.topic == name]
         none = Schema("", "", b"")
-        schemas = [self._contents.schemas.get(self._channels[number].schema, none) for number in numbers]
+        schemas = [self.contents.schemas.get(self._channels[number].schema, none) for number in numbers]
         types = ", ".join(dict.fromkeys(full_name(schema.name) for schema in schemas))
         forms = ", ".join(dict.fromkeys(self._channels[number].serialization for number in numbers))
-        counts = self._contents.counts
+        if forms == ROS1:
+            self._old[name] = (types, schemas[0].text.decode(errors="replace"))
+            forms = "cdr"
+        counts = self.contents.counts
         count = None if counts is None else sum(counts.get(number, 0) for number in numbers)
         return Topic(types, forms, schemas[0].form, schemas[0].text.decode(errors="replace"), count)
 
@@ -87,14 +94,33 @@ class McapStorage:
         """The messages of `topics`. Raises RecordingError after those that could be read."""
         wanted = {number: channel.topic for number, channel in self._channels.items() if channel.topic in topics}
         try:
-            if self._contents.chunks is None:
-                yield from self._walked(wanted)
+            if self.contents.chunks is None:
+                batches = self._walked(wanted)
             else:
-                yield from self._indexed(wanted, self._contents.chunks, since, until)
+                batches = self._indexed(wanted, self.contents.chunks, since, until)
+            yield from map(self._as_ros2, batches) if self._old else batches
         except DamageError as error:
             raise self._damaged(str(error)) from None
         except OSError as error:
             raise failure("LTL902", self._path, f"`{self._path}` cannot be read: {error.strerror}") from None
+
+    def _as_ros2(self, batch: Batch) -> Batch:
+        """The same, with the messages of ROS 1, as `mcap convert` and `--cut` leave them, made those of ROS 2."""
+        from rosbags.rosbag1 import ReaderError  # noqa: TID251
+
+        from ltlc.inputs.recordings.bags.ros1 import converter
+
+        found = dict(batch.messages)
+        for topic in found.keys() & self._old.keys():
+            if topic not in self._converters:
+                try:
+                    self._converters[topic] = converter(*self._old[topic])
+                except ReaderError as error:
+                    raise DamageError(str(error)) from None
+            messages = found[topic]
+            data = list(map(self._converters[topic], messages.raw()))
+            found[topic] = batch_of(data, messages.times, messages.places)
+        return Batch(found, batch.next)
 
     def _damaged(self, what: str) -> RecordingError:
         help = "`mcap recover` saves what can be saved; the verdicts are about what comes before the damage"

@@ -9,12 +9,7 @@ from io import BufferedReader
 import numpy as np
 
 from ltlc.inputs.recordings.bags.mcap_records import (
-    CHUNK,
-    CHUNK_HEAD,
-    HEAD,
-    MESSAGE,
     MESSAGE_HEAD,
-    ChunkIndex,
     Contents,
     DamageError,
     messages_in,
@@ -22,6 +17,7 @@ from ltlc.inputs.recordings.bags.mcap_records import (
 )
 from ltlc.inputs.recordings.bags.messages import LARGEST, Batch, Messages, Room, gathered
 from ltlc.inputs.recordings.blocks import Array, Places
+from ltlc.runtime.mcap import CHUNK, CHUNK_HEAD, HEAD, MESSAGE, ChunkIndex
 from ltlc.semantics.durations import Nanoseconds
 
 _HEAD = np.dtype([("opcode", "u1"), ("length", "<i8"), ("channel", "<u2"), ("number", "<u4"), ("times", "<i8", 2)])

@@ -13,12 +13,8 @@ import numpy as np
 
 from ltlc.inputs.recordings.bags.messages import LARGEST
 from ltlc.inputs.recordings.blocks import Array
+from ltlc.runtime.mcap import CHANNEL, CHUNK, CHUNK_HEAD, DATA_END, HEAD, MAGIC, MESSAGE, SCHEMA, ChunkIndex
 from ltlc.semantics.durations import Nanoseconds
-
-MAGIC = b"\x89MCAP0\r\n"
-SCHEMA, CHANNEL, MESSAGE, CHUNK, DATA_END = 3, 4, 5, 6, 15
-HEAD = struct.Struct("<BQ")
-"""Before each record: what it is, and its length."""
 
 MESSAGE_HEAD = struct.Struct("<HIqq")
 """A message's channel, number, time of recording and of sending; the data follow.
@@ -26,20 +22,17 @@ MESSAGE_HEAD = struct.Struct("<HIqq")
 The times are without a sign in the file: one that is below 0 here is one that no clock shows.
 """
 
-CHUNK_HEAD = struct.Struct("<QQQII")
-"""A chunk's first and last time, size, checksum (0 is none), and the length of the name of its compression."""
-
-
 _OF_USE = {SCHEMA, CHANNEL, MESSAGE, CHUNK}
 _CUT_OFF = "it is cut off, as if the recorder was killed"
 
 
 class Channel(NamedTuple):
-    """The messages of one recorder on a topic: their schema and serialization."""
+    """The messages of one recorder on a topic: their schema and serialization, and what else a record says of them."""
 
     schema: int
     topic: str
     serialization: str
+    more: bytes = b"\0\0\0\0"
 
 
 class Schema(NamedTuple):
@@ -48,23 +41,6 @@ class Schema(NamedTuple):
     name: str
     form: str
     text: bytes
-
-
-class ChunkIndex(NamedTuple):
-    """A chunk: its first and last time, which bytes of the file it is, what compresses it, and its size unpacked.
-
-    Behind it lie `index_length` bytes, in which the index of the messages of each channel is at the place in the file
-    that `indexes` has; without `indexes` there is none.
-    """
-
-    first: Nanoseconds
-    last: Nanoseconds
-    start: int
-    length: int
-    indexes: dict[int, int]
-    index_length: int
-    compression: bytes
-    size: int
 
 
 class DamageError(Exception):
@@ -90,7 +66,7 @@ class Contents:
             self.schemas.setdefault(number, Schema(_text(stream), _text(stream), _bytes(stream)))
         elif opcode == CHANNEL:
             number, schema = struct.unpack("<HH", stream.read(4))
-            self.channels.setdefault(number, Channel(schema, _text(stream), _text(stream)))
+            self.channels.setdefault(number, Channel(schema, _text(stream), _text(stream), stream.read()))
 
 
 def _bytes(stream: BytesIO) -> bytes:
@@ -130,7 +106,7 @@ def records(file: BufferedReader, contents: Contents) -> Iterator[bytes | memory
             raise DamageError(_too_large(f"the record at byte {place}", length))
         body = file.read(length)
         if opcode == CHUNK:
-            chunk = _opened(body, f"the chunk at byte {place}", len(body) < length)
+            chunk = opened(body, f"the chunk at byte {place}", len(body) < length)
             yield from (message for _, message in messages_in(chunk, contents))
         if len(body) < length:
             raise DamageError(_CUT_OFF)
@@ -143,7 +119,7 @@ def _too_large(where: str, size: int) -> str:
     return f"{where} claims {size} bytes, more than the maximum of {LARGEST}"
 
 
-def _opened(body: bytes, where: str, is_cut: bool) -> memoryview:
+def opened(body: bytes, where: str, is_cut: bool) -> memoryview:
     """The records of a chunk; of one that is cut off, as much as there is. Raises DamageError."""
     if not is_cut:
         return memoryview(unpacked(memoryview(body), where).tobytes())

@@ -5,10 +5,10 @@ from __future__ import annotations
 import struct
 from io import SEEK_END, BufferedReader
 
-from ltlc.inputs.recordings.bags.mcap_records import CHANNEL, HEAD, MAGIC, SCHEMA, ChunkIndex, Contents
+from ltlc.inputs.recordings.bags.mcap_records import Contents
 from ltlc.inputs.recordings.bags.messages import LARGEST, span_of
+from ltlc.runtime.mcap import CHANNEL, CHUNK_INDEX, FOOTER, HEAD, MAGIC, SCHEMA, STATISTICS, ChunkIndex
 
-FOOTER, CHUNK_INDEX, STATISTICS = 2, 8, 11
 _FOOTER = struct.Struct("<QQI")
 _CHUNK_INDEX = struct.Struct("<QQQQI")
 _INDEX_AND_NAME = struct.Struct("<QI")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import bz2
 import re
 import struct
-from collections.abc import Collection, Iterator
+from collections.abc import Callable, Collection, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -15,8 +15,11 @@ from rosbags.rosbag1 import Reader, ReaderError  # noqa: TID251
 from rosbags.serde import SerdeError  # noqa: TID251
 from rosbags.typesys import Stores, TypesysError, get_types_from_msg, get_typestore  # noqa: TID251
 
+from ltlc.inputs.recordings.bags.chunked import Message
+from ltlc.inputs.recordings.bags.mcap_records import Channel, Contents, Schema
 from ltlc.inputs.recordings.bags.messages import LARGEST, LATEST, Batch, Topic, batch_of
 from ltlc.inputs.recordings.rows import RecordingError, failure
+from ltlc.runtime.mcap import metadata
 from ltlc.semantics.durations import Nanoseconds
 
 ENOUGH = 1 << 12
@@ -82,19 +85,46 @@ class Ros1Storage:
     def _messages(
         self, topics: Collection[str], since: Nanoseconds, until: Nanoseconds
     ) -> Iterator[tuple[str, Nanoseconds, bytes]]:
-        stores: dict[int, Any] = {}
+        converters: dict[int, Converter] = {}
+        for connection, time, raw in self._raw(topics, since, until):
+            convert = converters.get(connection.id)
+            if convert is None:
+                convert = converters[connection.id] = converter(connection.msgtype, connection.msgdef.data)
+            yield connection.topic, time, convert(raw)
+
+    def _raw(
+        self, topics: Collection[str], since: Nanoseconds, until: Nanoseconds
+    ) -> Iterator[tuple[Connection, Nanoseconds, bytes]]:
         with Reader(self._path) as reader:
             for place, chunk in reader.chunks.items():
                 reader.chunks[place] = _bounded(place, chunk)
             connections = [each for each in reader.connections if each.topic in topics]
-            if not connections:
-                return  # none would mean all to rosbags
-            stop = min(until, LATEST - 1) + 1
-            for connection, time, raw in reader.messages(connections, max(since, 0), stop):
-                store = stores.get(connection.id)
-                if store is None:
-                    store = stores[connection.id] = _store(connection)
-                yield connection.topic, time, _as_cdr(store, raw, connection.msgtype)
+            if connections:  # none would mean all to rosbags
+                yield from reader.messages(connections, max(since, 0), min(until, LATEST - 1) + 1)
+
+    def contents(self) -> Contents:
+        """Its connections as schemas and channels of MCAP, each with the number that it has. Raises RecordingError."""
+        contents = Contents()
+        try:
+            with Reader(self._path) as reader:
+                connections = list(reader.connections)
+        except (*_FAULTS, OSError) as error:
+            raise self._damaged(error, "") from None
+        for each in connections:
+            said = {**each.ext._asdict(), "md5sum": each.digest}
+            more = metadata({key: str(value) for key, value in said.items() if value is not None})
+            type_ = each.msgtype.replace("/msg/", "/")
+            contents.schemas[each.id] = Schema(type_, "ros1msg", each.msgdef.data.encode())
+            contents.channels[each.id] = Channel(each.id, each.topic, "ros1", more)
+        return contents
+
+    def items(self, since: Nanoseconds, until: Nanoseconds) -> Iterator[Message]:
+        """The messages recorded from `since` to `until`. Raises RecordingError."""
+        try:
+            for connection, time, raw in self._raw(self.topics, since, until):
+                yield Message(connection.id, 0, time, time, raw)
+        except (*_FAULTS, OSError) as error:
+            raise self._damaged(error, "`rosbag fix` or `rosbag reindex` may save it") from None
 
 
 def _bounded(place: int, chunk: Any) -> Any:
@@ -121,24 +151,27 @@ def _topic(connections: list[Connection], count: int) -> Topic:
     return Topic(types, "cdr", "ros1msg", connections[0].msgdef.data, count)
 
 
-def _as_cdr(store: Any, raw: bytes, message: str) -> bytes:
-    """A message as one of ROS 2; nothing, which is no message, of one that is not what its definition says."""
-    try:
-        return bytes(store.ros1_to_cdr(raw, _unlike(message)))
-    except _MISFITS:
-        return b""
+Converter = Callable[[bytes | memoryview], bytes]
+"""Makes a message of ROS 1 one of ROS 2; nothing, which is no message, of one that is not what its definition says."""
 
 
-def _store(connection: Connection) -> Any:
-    """What converts the messages of a connection. Raises ReaderError."""
+def converter(type_: str, definition: str) -> Converter:
+    """What converts messages of a type that is so defined. Raises ReaderError."""
     store = get_typestore(Stores.EMPTY)
     try:
-        types = get_types_from_msg(connection.msgdef.data, connection.msgtype)
+        types = get_types_from_msg(definition, type_)
     except TypesysError as error:
         first = str(error).partition("\n")[0]
-        raise ReaderError(f"the definition of {connection.msgtype} cannot be read: {first}") from None
+        raise ReaderError(f"the definition of {type_} cannot be read: {first}") from None
     store.register({_unlike(name): _unlike(definition) for name, definition in types.items()})
-    return store
+
+    def convert(raw: bytes | memoryview) -> bytes:
+        try:
+            return bytes(store.ros1_to_cdr(raw, _unlike(type_)))
+        except _MISFITS:
+            return b""
+
+    return convert
 
 
 def _unlike(part: Any) -> Any:

@@ -12,8 +12,11 @@ from typing import Any
 import numpy as np
 
 from ltlc.inputs.messages.texts import full_name
+from ltlc.inputs.recordings.bags.chunked import Message
+from ltlc.inputs.recordings.bags.mcap_records import Channel, Contents, Schema
 from ltlc.inputs.recordings.bags.messages import LARGEST, LATEST, Batch, Messages, Room, Topic, span_of
 from ltlc.inputs.recordings.rows import RecordingError, failure
+from ltlc.runtime.mcap import metadata
 from ltlc.semantics.durations import Nanoseconds
 
 ENOUGH = 1 << 22
@@ -24,6 +27,9 @@ MOST = 1 << 13
 
 FEW = 1 << 7
 """So many rows are fetched at once, fewer if they are large: their memory is used again for the next."""
+
+_HASH = "type_description_hash"
+"""The column with the hash of a topic's type, which databases have from version 4 of their schema on."""
 
 _FAULTS = (sqlite3.Error, OSError, OverflowError, UnicodeDecodeError)
 """What comes of a file that is damaged: the last one where SQLite quotes what is not text."""
@@ -88,6 +94,38 @@ class SqliteStorage:
             raise self._damaged(error) from None
         except TypeError:
             raise self._damaged("a message is not a blob, or its time is not a number") from None
+
+    def contents(self) -> Contents:
+        """Its topics as schemas and channels of MCAP, each with the number that it has. Raises RecordingError."""
+        contents = Contents()
+        try:
+            with closing(self._opened()) as database:
+                definitions = _definitions(database)
+                cursor = database.execute("select * from topics")
+                names = [column[0] for column in cursor.description]
+                rows = [dict(zip(names, row, strict=True)) for row in cursor]
+        except _FAULTS as error:
+            raise self._unusable(error) from None
+        for row in rows:
+            number, type_ = row["id"], row["type"]
+            kept = {"offered_qos_profiles": row.get("offered_qos_profiles"), "topic_type_hash": row.get(_HASH)}
+            more = metadata({key: text for key, text in kept.items() if isinstance(text, str)})
+            form, text = definitions.get(full_name(type_), ("", ""))
+            contents.schemas[number] = Schema(type_, form, text.encode())
+            contents.channels[number] = Channel(number, row["name"], row["serialization_format"], more)
+        return contents
+
+    def items(self, since: Nanoseconds, until: Nanoseconds) -> Iterator[Message]:
+        """The messages recorded from `since` to `until`. Raises RecordingError."""
+        query = "select topic_id, timestamp, data from messages where timestamp between ? and ? order by timestamp, id"
+        try:
+            with closing(self._opened()) as database:
+                for number, time, data in database.execute(query, (since, until)):
+                    if not isinstance(data, bytes):
+                        raise self._damaged("a message is not a blob")
+                    yield Message(number, 0, time, time, data)
+        except _FAULTS as error:
+            raise self._damaged(error) from None
 
     def _unusable(self, error: Exception) -> RecordingError:
         message = f"`{self._path}` cannot be read as a database of rosbag2: {error}"
