@@ -27,7 +27,7 @@ BROKEN = FIXTURES / "fuzz"
 """A folder for each input that broke something once: its files, and `arguments`, one a line."""
 
 BUDGET = Budget(60, 2048)
-LIMIT = "--budget=2,512"
+LIMIT = "--budget=0.5,512"
 
 
 @dataclass(frozen=True)
