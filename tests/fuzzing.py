@@ -17,6 +17,7 @@ from pathlib import Path
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import seed as seeded
 from hypothesis import strategies as st
+from quick_gate import quick_gate
 
 from ltlc.base.limits import Budget, Exceeded, run_all
 from ltlc.cli import TRACEBACK, main
@@ -27,7 +28,7 @@ BROKEN = FIXTURES / "fuzz"
 """A folder for each input that broke something once: its files, and `arguments`, one a line."""
 
 BUDGET = Budget(60, 2048)
-LIMIT = "--budget=0.5,512"
+LIMIT = "--budget=2,512"
 
 
 @dataclass(frozen=True)
@@ -179,8 +180,8 @@ def _certificates() -> Iterator[str]:
     """The certificates that a build of `PROPERTIES` writes."""
     with tempfile.TemporaryDirectory(prefix="fuzz") as folder, contextlib.chdir(folder):
         Path("props.txt").write_text(PROPERTIES, encoding="utf-8")
-        with contextlib.redirect_stdout(StringIO()), contextlib.redirect_stderr(StringIO()):
-            code = main(["build", "props.txt", "--target", "json", "-o", "monitor", "--certificate", "proof"])
+        with quick_gate(), contextlib.redirect_stdout(StringIO()), contextlib.redirect_stderr(StringIO()):
+            code = main(["build", "props.txt", "--target", "json", "-o", "monitor", "--certificate", "proof", LIMIT])
         assert code == 0
         yield Path("proof").read_text(encoding="utf-8")
 
