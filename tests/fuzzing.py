@@ -181,7 +181,9 @@ def _certificates() -> Iterator[str]:
     with tempfile.TemporaryDirectory(prefix="fuzz") as folder, contextlib.chdir(folder):
         Path("props.txt").write_text(PROPERTIES, encoding="utf-8")
         with quick_gate(), contextlib.redirect_stdout(StringIO()), contextlib.redirect_stderr(StringIO()):
-            code = main(["build", "props.txt", "--target", "json", "-o", "monitor", "--certificate", "proof", LIMIT])
+            code = main(
+                ["build", "props.txt", "--target", "json", "-o", "monitor", "--certificate", "proof", "--budget=1,512"]
+            )
         assert code == 0
         yield Path("proof").read_text(encoding="utf-8")
 
