@@ -17,6 +17,7 @@ from pathlib import Path
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import seed as seeded
 from hypothesis import strategies as st
+from quick_gate import quick_gate
 
 from ltlc.base.limits import Budget, Exceeded, run_all
 from ltlc.cli import TRACEBACK, main
@@ -179,8 +180,10 @@ def _certificates() -> Iterator[str]:
     """The certificates that a build of `PROPERTIES` writes."""
     with tempfile.TemporaryDirectory(prefix="fuzz") as folder, contextlib.chdir(folder):
         Path("props.txt").write_text(PROPERTIES, encoding="utf-8")
-        with contextlib.redirect_stdout(StringIO()), contextlib.redirect_stderr(StringIO()):
-            code = main(["build", "props.txt", "--target", "json", "-o", "monitor", "--certificate", "proof"])
+        with quick_gate(), contextlib.redirect_stdout(StringIO()), contextlib.redirect_stderr(StringIO()):
+            code = main(
+                ["build", "props.txt", "--target", "json", "-o", "monitor", "--certificate", "proof", "--budget=1,512"]
+            )
         assert code == 0
         yield Path("proof").read_text(encoding="utf-8")
 

@@ -25,7 +25,7 @@ from ltlc.assurance.c_programs import rust_programs
 from ltlc.assurance.compiled_program import VERDICTS
 from ltlc.assurance.replay import Deviation, Replayed
 from ltlc.assurance.rust_library import RustLibrary, compiler
-from ltlc.backends.rust import MISSING, emit, file_of
+from ltlc.backends.rust import MISSING, emit, file_of, in_c
 from ltlc.backends.spelling import NotInTargetError
 from ltlc.cli import main
 from ltlc.compiler import Compiled
@@ -42,7 +42,7 @@ def fit(compiled: list[Compiled], of: Specification) -> list[Compiled]:
     found = []
     for each in compiled:
         try:
-            emit([each], of)
+            in_c([each], of)
         except NotInTargetError:
             continue
         found.append(each)

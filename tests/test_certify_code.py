@@ -12,6 +12,7 @@ from typing import Any
 
 import pytest
 from emitted_mutants import bare, c_mutants, python_mutants
+from quick_gate import quick_gate
 
 from ltlc import cli
 from ltlc.assurance.afresh import c, packages, python
@@ -39,7 +40,8 @@ def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
     (folder / "props.txt").write_text(PROPERTIES)
     for target, name in FILES.items():
         options = ["--target", target, "-o", str(folder / name), "--certificate", str(folder / "props.cert"), "-q"]
-        assert cli.main(["build", str(folder / "props.txt"), *options]) == 0
+        with quick_gate():
+            assert cli.main(["build", str(folder / "props.txt"), *options]) == 0
     return folder
 
 
@@ -240,8 +242,7 @@ PACKAGE_CHANGES = (
 def test_none_of_seventy_changed_files_is_accepted(built: Path) -> None:
     """Compared as `certify --code` does: a statement, operator, operand, parenthesis or constant is another."""
     tables = {"code.c": C_CHANGES, "code.py": PYTHON_CHANGES, "node.py": NODE_CHANGES, "pkg": PACKAGE_CHANGES}
-    own = [(name, right, wrong) for name, right, wrong, _ in CHANGES.values()]
-    changes = [*own, *((name, *change) for name, table in tables.items() for change in table)]
+    changes = [(name, *change) for name, table in tables.items() for change in table]
     assert len(set(changes)) >= 70
     for name, right, wrong in changes:
         assert refusal(built, name, right, wrong) != "", (name, right, wrong)
@@ -360,7 +361,7 @@ def sample(mutants: Iterator[str], count: int) -> Sequence[str]:
 def test_python_is_equal_exactly_if_its_tree_is(built: Path, name: str) -> None:
     text = (built / name).read_text()
     right = bare(text)
-    for mutant in python_mutants(text, 0.05 if name == "code.py" else 0.0003):
+    for mutant in python_mutants(text, 0.05 if name == "code.py" else 0.0001):
         assert isinstance(python.compare(mutant, text), Equal) == (bare(mutant) == right), mutant
 
 

@@ -463,7 +463,7 @@ def test_all_recordings_pass_what_is_rounded_and_one_fails_what_is_tighter_than_
     tmp_path: Path, template: str
 ) -> None:
     chance = Random(template)
-    for case in range(4):
+    for case in range(2):
         files = [
             recording(
                 tmp_path / f"{case}_{k}.csv",

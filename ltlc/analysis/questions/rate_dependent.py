@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from ltlc.analysis.findings import Finding
-from ltlc.analysis.groups import reads_of
 from ltlc.analysis.questions.exact_equality import is_change, measured_equalities
 from ltlc.analysis.subjects import Study, Subject
 from ltlc.analysis.wording import listed
@@ -18,10 +17,10 @@ from ltlc.specification.expressions import (
     Count,
     Expression,
     IsTrue,
+    Opening,
     Past,
     Recent,
     Relation,
-    inputs,
     operands,
     reads,
 )
@@ -85,7 +84,7 @@ def _compares_topics(condition: Condition) -> bool:
 
 
 def _apart(atom: Atom) -> Finding:
-    read = sorted({field.topic for value in reads_of(atom.condition) for _, field in fields(value.signal)})
+    read = sorted({topic for side in operands(atom.condition) for topic in _topics(side)})
     return Finding(
         "LTL521",
         atom.span,
@@ -96,4 +95,6 @@ def _apart(atom: Atom) -> Finding:
 
 
 def _topics(expression: Expression) -> set[str]:
-    return {field.topic for value in inputs(expression) for _, field in fields(value.signal)}
+    """The topics whose messages change what it is; a value at an opening stays."""
+    read = (value for value in reads(expression) if not isinstance(value, Opening))
+    return {field.topic for value in read for _, field in fields(value.signal)}

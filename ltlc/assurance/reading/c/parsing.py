@@ -67,7 +67,8 @@ def parsed(text: str, types: Sequence[str] = ()) -> Text:
     for token in found:
         if id(token) not in aside:
             lines[token.line - 1].append(token.text)
-    known = (*STANDARD, *types)
+    named = {token.text for token in found}
+    known = [name for name in (*STANDARD, *types) if name in named]
     before = "".join(f"typedef int {name};" for name in known)
     try:
         tree = CParser().parse(before + "\n".join(map(" ".join, lines)))
