@@ -12,6 +12,7 @@ from test_semantics_certificate_text import NEAR, SPEEDING, STOP_SIGN, TEXT, ent
 from ltlc.assurance.certificates import Checked, Subject, Unreadable, check_certificates
 from ltlc.semantics.alphabet import Alphabet, Group
 from ltlc.semantics.certificate import Answer
+from ltlc.semantics.certificate_reader import parse
 from ltlc.semantics.certificate_text import Entry, to_text
 from ltlc.semantics.ltl import TRUE, Not
 from ltlc.semantics.monitor import Monitor
