@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import ast
+import sys
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -38,6 +40,7 @@ from ltlc.assurance.evidence.document import (
     printed,
 )
 from ltlc.assurance.evidence.seam import difference, differences
+from ltlc.cli import main
 from ltlc.inputs.messages.definitions import MessageTypes, shipped
 from ltlc.inputs.recordings.reading import Offset, ReadOptions, Stamp
 from ltlc.semantics.verdicts import Verdict
@@ -314,3 +317,20 @@ speed: always robot.velocity < 1
         assert found is not None
         code = recorded.check_document(next(recorded.documents(printed(found))), bag, lambda _: None)
         assert code == 0
+
+
+def test_the_reader_is_printed_as_it_is_and_imports_nothing_of_ltlc(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as ended:
+        main(["certify", "--show-reader"])
+    assert ended.value.code == 0
+    shown = capsys.readouterr().out
+    assert shown == Path(recorded.__file__).read_text(encoding="utf-8")
+    imported = {alias for node in ast.walk(ast.parse(shown)) for alias in names_of(node)}
+    assert imported - sys.stdlib_module_names == {"numpy", "rosbags"}
+
+
+def names_of(node: ast.AST) -> list[str]:
+    """The packages that a statement imports."""
+    if isinstance(node, ast.Import):
+        return [alias.name.partition(".")[0] for alias in node.names]
+    return [str(node.module).partition(".")[0]] if isinstance(node, ast.ImportFrom) else []

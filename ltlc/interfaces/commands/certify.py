@@ -8,9 +8,11 @@ what judged recordings (`checked_evidence`).
 from __future__ import annotations
 
 import argparse
+import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+from ltlc.assurance import evidence
 from ltlc.assurance.certificates import Checked, Subject, Unreadable, check_certificates
 from ltlc.assurance.evidence.document import digest
 from ltlc.automata import Budget, SpotMissing
@@ -60,6 +62,20 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar=("FILE", "RECORDING"),
         help="also check that the recordings have the verdicts that FILE states, which `ltlc run --evidence` wrote",
     )
+    parser.add_argument(
+        "--show-reader",
+        action=_Reader,
+        nargs=0,
+        help="print the program that reads a recording anew for --evidence, to be run without ltlc, and exit",
+    )
+
+
+class _Reader(argparse.Action):
+    """Prints `recorded.py` as it is."""
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
+        sys.stdout.write((Path(evidence.__file__).parent / "recorded.py").read_text(encoding="utf-8"))
+        parser.exit()
 
 
 def run(options: argparse.Namespace) -> int:
