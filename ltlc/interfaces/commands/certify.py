@@ -15,14 +15,16 @@ from pathlib import Path
 from ltlc.assurance import evidence
 from ltlc.assurance.certificates import Checked, Subject, Unreadable, check_certificates
 from ltlc.assurance.evidence.document import digest
+from ltlc.assurance.evidence.statement import State
 from ltlc.automata import Budget, SpotMissing
 from ltlc.base.diagnostics import Diagnostic
 from ltlc.compiler import Compiled
 from ltlc.frontend.language import load_text, read_source
 from ltlc.frontend.language.suppression import unsuppressed
 from ltlc.interfaces.commands import arguments
+from ltlc.interfaces.commands.attesting import add_outputs, attest, refuse_unusable
 from ltlc.interfaces.commands.checked_evidence import check_evidence, documents_at
-from ltlc.interfaces.commands.common import FINDING, OK, failure, report, unusable
+from ltlc.interfaces.commands.common import FINDING, OK, UNDECIDED, failure, report, unusable
 from ltlc.interfaces.commands.emitted_code import Code, UnusableError, code_at, is_code_of
 from ltlc.interfaces.commands.followed_programs import are_followed
 from ltlc.interfaces.commands.progress import progress, saying
@@ -68,6 +70,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         nargs=0,
         help="print the program that reads a recording anew for --evidence, to be run without ltlc, and exit",
     )
+    add_outputs(parser)
 
 
 class _Reader(argparse.Action):
@@ -98,6 +101,7 @@ def run(options: argparse.Namespace) -> int:
 
 def _certify(options: argparse.Namespace, specification: Specification, encoding: Encoding) -> int:
     """Say of each property whether its certificate proves its monitor right, and check what was asked for."""
+    refuse_unusable(options)
     documents = documents_at(options.evidence[0]) if options.evidence else ()
     text = _certificates(options, specification, encoding)
     code = None if options.code is None else code_at(options.code)
@@ -121,7 +125,10 @@ def _certify(options: argparse.Namespace, specification: Specification, encoding
     if documents:
         entries = {each.label: each.certified for each in checked if each.certified is not None}
         certificates = digest(text), entries
-        found, _ = check_evidence(documents, specification, certificates, options.evidence[1:], options.quiet)
+        found, claims = check_evidence(documents, specification, certificates, options.evidence[1:], options.quiet)
+        state = {OK: State.ACCEPTED, UNDECIDED: State.UNCHECKED}.get(found, State.REFUSED)
+        results = list(zip(documents, claims, strict=True))
+        found = max(found, attest(options, results, state, specification))
     return found if is_right else FINDING
 
 
