@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import ast
+import sys
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -37,7 +39,8 @@ from ltlc.assurance.evidence.document import (
     parsed,
     printed,
 )
-from ltlc.assurance.evidence.seam import differences
+from ltlc.assurance.evidence.seam import difference, differences
+from ltlc.cli import main
 from ltlc.inputs.messages.definitions import MessageTypes, shipped
 from ltlc.inputs.recordings.reading import Offset, ReadOptions, Stamp
 from ltlc.semantics.verdicts import Verdict
@@ -219,7 +222,10 @@ def test_a_table_is_not_covered(tmp_path: Path) -> None:
 
 
 def seam(document: Document, text: str) -> list[str]:
-    return list(differences(document, judge_of(text).specification, digest(text)))
+    """Where a document, or one of its claims, is not about a specification."""
+    of = judge_of(text).specification
+    claims = (each for each in document.properties if isinstance(each, Claim))
+    return [*differences(document, of), *(found for each in claims if (found := difference(each, of)))]
 
 
 def test_the_seam_finds_nothing_in_what_was_written(tmp_path: Path) -> None:
@@ -311,3 +317,20 @@ speed: always robot.velocity < 1
         assert found is not None
         code = recorded.check_document(next(recorded.documents(printed(found))), bag, lambda _: None)
         assert code == 0
+
+
+def test_the_reader_is_printed_as_it_is_and_imports_nothing_of_ltlc(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as ended:
+        main(["certify", "--show-reader"])
+    assert ended.value.code == 0
+    shown = capsys.readouterr().out
+    assert shown == Path(recorded.__file__).read_text(encoding="utf-8")
+    imported = {alias for node in ast.walk(ast.parse(shown)) for alias in names_of(node)}
+    assert imported - sys.stdlib_module_names == {"numpy", "rosbags"}
+
+
+def names_of(node: ast.AST) -> list[str]:
+    """The packages that a statement imports."""
+    if isinstance(node, ast.Import):
+        return [alias.name.partition(".")[0] for alias in node.names]
+    return [str(node.module).partition(".")[0]] if isinstance(node, ast.ImportFrom) else []

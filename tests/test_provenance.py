@@ -6,6 +6,7 @@ import json
 from collections.abc import Callable
 from hashlib import sha256
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
 
 import pytest
@@ -29,7 +30,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def made_of(folder: Path, *recordings: str) -> dict[str, object]:
+def made_of(folder: Path, *recordings: str) -> dict[str, Any]:
     """What a document made of the specification and the `recordings` has to say."""
     files = [folder / name for name in recordings]
     return {
@@ -118,12 +119,13 @@ def test_sarif_says_it_in_its_own_terms(folder: Path, capsys: pytest.CaptureFixt
     assert run["tool"]["driver"].get("properties", {}).get("commit", "") == commit_text()
 
 
-def test_of_a_bag_the_files_with_messages_are_named(folder: Path, document: Document) -> None:
+def test_of_a_bag_all_files_are_named(folder: Path, document: Document) -> None:
     rosbag2(folder / "bag", [odometry(0), odometry(1)])
-    names = [each.name for each in sorted((folder / "bag").iterdir()) if each.name != "metadata.yaml"]
+    (folder / "bag" / "notes.txt").write_text("no part of the recording")
+    names = ["bag.db3", "metadata.yaml"]
     found = document("run", "props.txt", "bag")["provenance"]["recordings"]
-    assert found == made_of(folder, *(f"bag/{name}" for name in names))["recordings"]
-    assert found
+    wanted = made_of(folder, *(f"bag/{name}" for name in names))["recordings"]
+    assert found == [each | {"name": f"bag/{each['name']}"} for each in wanted]
 
 
 def test_what_is_in_no_file_has_no_digest(folder: Path) -> None:

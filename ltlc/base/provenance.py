@@ -26,11 +26,11 @@ class FileDigest:
     sha256: str
 
 
-def digest_of(path: Path) -> FileDigest:
-    """The file at `path`. Raises OSError."""
+def digest_of(path: Path, name: str) -> FileDigest:
+    """The file at `path`, called `name`. Raises OSError."""
     with path.open("rb") as file:
         found = file_digest(file, "sha256").hexdigest()
-        return FileDigest(path.name, file.tell(), found)
+        return FileDigest(name, file.tell(), found)
 
 
 def provenance(specifications: Iterable[Source], recordings: Iterable[FileDigest] = ()) -> dict[str, Any]:

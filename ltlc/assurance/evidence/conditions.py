@@ -170,7 +170,12 @@ class _Writer:
             return {"of": _field(signal.definition)}
         sampled: dict[str, object] = {"sampled": self.expression(signal.definition)}
         if signal.when is not None:
-            sampled["when"] = self._predicate(signal.when.predicate, dict(signal.when.conditions))
+            conditions = dict(signal.when.conditions)
+            sampled["when"] = self._predicate(signal.when.predicate, conditions)
+            others = [conditions[name] for name in conditions.keys() - {*ltl.atoms(signal.when.predicate)}]
+            measured = [side for each in signal.when.conditions for side in e.operands(each[1]) if each[1] in others]
+            if measured:
+                sampled["measured"] = [self.expression(side) for side in measured]
         return {"of": sampled}
 
     def _predicate(self, formula: ltl.Formula, conditions: Mapping[str, e.Condition]) -> Json:

@@ -258,18 +258,29 @@ def read(path: Path, document: Document) -> Recording:
     wanted: dict[str, dict[str, Json]] = {name: {} for claim in document.claims for name in topics_of(claim.atoms)}
     for each in (each for claim in document.claims for each in fields_of(claim.atoms)):
         wanted[each["topic"]][json.dumps(each["path"])] = each
-    with ExitStack() as stack:
-        return read_bag(open_bag(path, document, stack), document, wanted)
+    try:
+        with ExitStack() as stack:
+            found = read_bag(open_bag([path], document, stack), document, wanted)
+            if found.first is None and path.is_dir():  # rosbags finds nothing by some old metadata
+                files = [at for name, at in files_of(path).items() if is_bag(name)]
+                found = read_bag(open_bag(files, document, stack), document, wanted)
+            return found
+    except (Refused, NotCovered):
+        raise
+    except Exception as error:  # whatever rosbags says of a file that it does not read
+        raise NotCovered(
+            f"rosbags cannot read it: {type(error).__name__}: {str(error).partition(chr(10))[0]}"
+        ) from None
 
 
-def open_bag(path: Path, document: Document, stack: ExitStack) -> Any:
-    """The bag at a path; where it defines no messages, they are those of the release that the digests are of."""
+def open_bag(paths: list[Path], document: Document, stack: ExitStack) -> Any:
+    """The bag at some paths; where it defines no messages, they are those of the release that the digests are of."""
     from rosbags.highlevel import AnyReader  # noqa: TID251
     from rosbags.typesys import Stores, get_typestore  # noqa: TID251
 
     releases = [store for store in Stores if store.name.startswith("ROS2_")]
     for release in sorted(releases, key=lambda store: store is not Stores.ROS2_JAZZY):
-        reader = stack.enter_context(AnyReader([path], default_typestore=get_typestore(release)))
+        reader = stack.enter_context(AnyReader(paths, default_typestore=get_typestore(release)))
         wanted = document.head.digests("definition")
         if wanted == {name: definition_digest(reader.typestore, name) for name in wanted}:
             return reader
@@ -710,7 +721,7 @@ class Instants:
         starts = [int(topic.times[0]) for topic in self.topics.values() if len(topic.times)]
         starts = starts if session is None else [session]
         if rate is not None:
-            self.times = ticks(rate, min(starts), recorded.last) if starts else np.zeros(0, np.int64)
+            self.times = ticks(rate, min(starts), recorded.last or 0) if starts else np.zeros(0, np.int64)
         else:
             own = [] if session is None else [session]
             times = np.concatenate([np.array(own, np.int64), *(topic.times for topic in self.topics.values())])
@@ -756,10 +767,10 @@ class Instants:
         return Samples(column(known)[taken], fresh)
 
 
-def ticks(rate: Fraction, start: int, end: int | None) -> Array:
+def ticks(rate: Fraction, start: int, end: int) -> Array:
     """The times of ticks, cut off to nanoseconds."""
     period = SECOND / rate
-    count = 0 if end is None or end < start else int((end - start) / period) + 1
+    count = max(0, ((end - start + 1) * period.denominator - 1) // period.numerator + 1)
     if count > MOST_TICKS:
         raise NotCovered(f"more than {MOST_TICKS} ticks")
     return np.array([start + k * period.numerator // period.denominator for k in range(count)], np.int64)
@@ -796,7 +807,8 @@ class Values:
         values, fresh = self.number(x["sampled"]), self.fresh(x) & self.known([*x.values()])
         if "when" in x:
             fresh = fresh & self.predicate(x["when"]) & ~is_nan(values)
-            for side in (side for part in parts(x["when"]) if "op" in part for side in sides(part)):
+            asked = [side for part in parts(x["when"]) if "op" in part for side in sides(part)]
+            for side in [*asked, *x.get("measured", [])]:
                 fresh &= ~is_nan(self.number(side))
         return Samples(values[fresh], fresh)
 
@@ -1202,8 +1214,9 @@ def check_document(document: Document, path: Path, say: Callable[[str], None]) -
             raise Refused("the recording has no messages")
         ends = end_of(document, recorded, recorded.first, recorded.last)
     except (NotCovered, Refused) as error:
-        say(f"{error.__class__.__name__.upper()}: {error}")
-        return 1 if isinstance(error, Refused) else 2
+        is_refused = isinstance(error, Refused)
+        say(f"{'REFUSED' if is_refused else 'NOT COVERED'}: {error}")
+        return 1 if is_refused else 2
     for claim in document.claims:
         label = claim.one("property")
         try:

@@ -8,19 +8,23 @@ what judged recordings (`checked_evidence`).
 from __future__ import annotations
 
 import argparse
+import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+from ltlc.assurance import evidence
 from ltlc.assurance.certificates import Checked, Subject, Unreadable, check_certificates
 from ltlc.assurance.evidence.document import digest
+from ltlc.assurance.evidence.statement import State
 from ltlc.automata import Budget, SpotMissing
 from ltlc.base.diagnostics import Diagnostic
 from ltlc.compiler import Compiled
 from ltlc.frontend.language import load_text, read_source
 from ltlc.frontend.language.suppression import unsuppressed
 from ltlc.interfaces.commands import arguments
+from ltlc.interfaces.commands.attesting import add_outputs, attest, refuse_unusable
 from ltlc.interfaces.commands.checked_evidence import check_evidence, documents_at
-from ltlc.interfaces.commands.common import FINDING, OK, failure, report, unusable
+from ltlc.interfaces.commands.common import FINDING, OK, UNDECIDED, failure, report, unusable
 from ltlc.interfaces.commands.emitted_code import Code, UnusableError, code_at, is_code_of
 from ltlc.interfaces.commands.followed_programs import are_followed
 from ltlc.interfaces.commands.progress import progress, saying
@@ -60,6 +64,21 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar=("FILE", "RECORDING"),
         help="also check that the recordings have the verdicts that FILE states, which `ltlc run --evidence` wrote",
     )
+    parser.add_argument(
+        "--show-reader",
+        action=_Reader,
+        nargs=0,
+        help="print the program that reads a recording anew for --evidence, to be run without ltlc, and exit",
+    )
+    add_outputs(parser)
+
+
+class _Reader(argparse.Action):
+    """Prints `recorded.py` as it is."""
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
+        sys.stdout.write((Path(evidence.__file__).parent / "recorded.py").read_text(encoding="utf-8"))
+        parser.exit()
 
 
 def run(options: argparse.Namespace) -> int:
@@ -82,6 +101,7 @@ def run(options: argparse.Namespace) -> int:
 
 def _certify(options: argparse.Namespace, specification: Specification, encoding: Encoding) -> int:
     """Say of each property whether its certificate proves its monitor right, and check what was asked for."""
+    refuse_unusable(options)
     documents = documents_at(options.evidence[0]) if options.evidence else ()
     text = _certificates(options, specification, encoding)
     code = None if options.code is None else code_at(options.code)
@@ -105,7 +125,10 @@ def _certify(options: argparse.Namespace, specification: Specification, encoding
     if documents:
         entries = {each.label: each.certified for each in checked if each.certified is not None}
         certificates = digest(text), entries
-        found, _ = check_evidence(documents, specification, certificates, options.evidence[1:], options.quiet)
+        found, claims = check_evidence(documents, specification, certificates, options.evidence[1:], options.quiet)
+        state = {OK: State.ACCEPTED, UNDECIDED: State.UNCHECKED}.get(found, State.REFUSED)
+        results = list(zip(documents, claims, strict=True))
+        found = max(found, attest(options, results, state, specification))
     return found if is_right else FINDING
 
 

@@ -19,8 +19,8 @@ from ltlc.base.source import Source
 from ltlc.compiler import Compiled
 from ltlc.inputs.recordings import Recording
 from ltlc.inputs.recordings.bags import BagRecording
-from ltlc.inputs.recordings.bags.folders import METADATA, is_bag
 from ltlc.inputs.recordings.bags.plan import absolute
+from ltlc.inputs.recordings.digests import files_of
 from ltlc.inputs.recordings.reading import ReadOptions, Stamp
 from ltlc.monitoring.judging.part import Part
 from ltlc.monitoring.later import JudgedTrack
@@ -89,17 +89,8 @@ class Digests:
         return tuple(each.result() for each in self._files)
 
 
-def files_of(path: Path) -> list[tuple[str, Path]]:
-    """The files of a recording, by their names: itself, or of a folder all bags and what describes them."""
-    if not path.is_dir():
-        return [(path.name, path)]
-    folder = path.resolve().name
-    files = (each for each in path.iterdir() if each.is_file() and (is_bag(each) or each.name == METADATA))
-    return sorted((f"{folder}/{each.name}", each) for each in files)
-
-
 def _file(name: str, path: Path) -> File:
-    found = digest_of(path)
+    found = digest_of(path, name)
     return File(name, found.bytes, found.sha256)
 
 

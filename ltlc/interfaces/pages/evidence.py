@@ -1,0 +1,113 @@
+"""What an assessor reads, and what prints: evidence, requirement by requirement, and what each check has shown."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from ltlc.assurance.evidence.document import Claim, Document, File, NotCovered, Summed
+from ltlc.assurance.evidence.outcomes import Check, CheckedClaim
+from ltlc.assurance.evidence.statement import Result, State
+from ltlc.assurance.evidence.words import in_words
+from ltlc.backends.templates import template
+from ltlc.runtime.reports import printable
+from ltlc.runtime.times import seconds_text
+from ltlc.semantics.verdicts import Verdict
+
+SAYS = {
+    Verdict.VIOLATED: "Violated: whatever had come after, the property could not have held any more",
+    Verdict.SATISFIED: "Satisfied: whatever had come after, the property would have held",
+    Verdict.PRESUMABLY_SATISFIED: "Holds on the whole recording; later it could still have been violated",
+    Verdict.PRESUMABLY_VIOLATED: "Not fulfilled at the end of the recording: something was still owed",
+    Verdict.NOT_STARTED: "Not judged: something that it reads never had a value",
+}
+"""What a verdict says of a recording."""
+
+CHECKED = {
+    "recorded": "from the recording to the letters",
+    "judge": "from the letters to the verdict",
+    "specification": "from the specification to what the letters are",
+}
+"""What each check is about."""
+
+
+def page(
+    evidence: File,
+    results: Sequence[Result],
+    state: State,
+    requirements: Mapping[str, str],
+    english: Mapping[str, str],
+) -> str:
+    """The page about a file of evidence in this `state`; texts of requirements, and what properties mean, by labels."""
+    recordings = [
+        _recording(document, found, requirements, english, f"recording-{number}")
+        for number, (document, found) in enumerate(results)
+    ]
+    head = results[0][0].head
+    return template(__package__, "evidence.html.jinja", escape=True).render(
+        evidence=evidence,
+        specification=head.specification,
+        certificates=head.certificates,
+        version=head.version,
+        recordings=recordings,
+        state=state.value,
+        shown=printable,
+    )
+
+
+def _recording(
+    document: Document,
+    found: Sequence[CheckedClaim],
+    requirements: Mapping[str, str],
+    english: Mapping[str, str],
+    id_: str,
+) -> dict[str, Any]:
+    """What is shown of the evidence of one recording."""
+    return {
+        "files": document.head.recordings,
+        "settings": list(_settings(document)),
+        "claims": [
+            {
+                "id": f"{id_}-{number}",
+                "requirement": requirements.get(each.of.label, ""),
+                "english": english.get(each.of.label, ""),
+                **_claim(each.of, each),
+            }
+            for number, each in enumerate(found)
+            if isinstance(each.of, Claim)
+        ],
+        "not_covered": [each.of for each in found if isinstance(each.of, NotCovered)],
+    }
+
+
+def _settings(document: Document) -> Iterator[str]:
+    """How the recording was read, where it was not read as it is."""
+    head = document.head
+    if head.rate is not None:
+        yield f"sampled {head.rate} times a second"
+    if head.timeout is not None:
+        yield f"a run ends after {seconds_text(head.timeout)} s"
+    if head.is_by_header:
+        yield "messages have the times of their headers"
+    if head.since is not None:
+        yield f"only from {seconds_text(head.since)} s on"
+    if head.until is not None:
+        yield f"only up to {seconds_text(head.until)} s"
+
+
+def _claim(claim: Claim, found: CheckedClaim) -> dict[str, Any]:
+    lines = claim.letters.count if isinstance(claim.letters, Summed) else len(claim.letters)
+    summed = ", as their SHA-256" if isinstance(claim.letters, Summed) else ""
+    return {
+        "claim": claim,
+        "says": f"{SAYS[claim.verdict]}, at {seconds_text(claim.decided)} s of the recording's clock",
+        "atoms": [(f"a{number}", each.name, in_words(each.condition)) for number, each in enumerate(claim.atoms)],
+        "lines": f"{lines} {'line' if lines == 1 else 'lines'} of letters{summed}",
+        "state": "refused" if found.is_refused else "accepted" if found.is_accepted else "unchecked",
+        "checks": [_check(each) for each in found.checks],
+    }
+
+
+def _check(check: Check) -> dict[str, str]:
+    state = "unchecked" if not check.was_done else "accepted" if check.refusal is None else "refused"
+    return {"what": CHECKED[check.what], "by": check.by, "state": state, "says": check.refusal or check.shown}
