@@ -252,7 +252,7 @@ def test_the_judge_finds_every_verdict_of_random_runs_of_all_operators(tmp_path:
     of_rate = "" if rate is None else f"_rate_ = {rate}\n"
     source.write_text(of_rate + HEAD + "".join(f"c{n}: {line}\n" for n, line in enumerate(TIMED.splitlines())))
     prepared = prepare(read_source(source), [], EPISODE, Budget())
-    by = evidence_by(prepared.compiled, prepared.specification, source, Budget())
+    by = evidence_by(prepared.compiled, prepared.specification, Budget())
     entries = {each.label: each for each in parse(certificates(prepared.compiled, Budget())[0])}
     judge = Judge(prepared.compiled, prepared.specification, evidence=by)
     for number in range(25):

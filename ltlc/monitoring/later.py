@@ -13,10 +13,9 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Container, Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ltlc.compiler import Compiled
-from ltlc.monitoring.letters import Letters
 from ltlc.runtime.courses import Course
 from ltlc.runtime.episodes import Episodes, latest
 from ltlc.runtime.properties import Failure, Moment, Monitor, MonitoredProperty
@@ -27,6 +26,9 @@ from ltlc.runtime.tracking import Observer, RecordedTrack, Track
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.timed_atoms import Age, Late, News, timed_atoms
 from ltlc.semantics.verdicts import Verdict
+
+if TYPE_CHECKING:
+    from ltlc.monitoring.letters import Letters
 
 MOST = 1000
 """After so many violations of a property no more are looked for."""

@@ -9,7 +9,6 @@ from contextlib import contextmanager
 from pathlib import Path
 from time import perf_counter_ns
 
-from ltlc.assurance.evidence.document import printed
 from ltlc.automata import Budget
 from ltlc.base.files import refuse_unwritable, write_all
 from ltlc.inputs.recordings import Block
@@ -170,6 +169,8 @@ def _run_one(judge: Judge, path: Path, options: argparse.Namespace) -> int:
     if options.evidence:
         if found.evidence is None:
             return unusable(f"{options.evidence} is not written: not all of the recording could be judged")
+        from ltlc.assurance.evidence.document import printed
+
         written[options.evidence] = printed(found.evidence).encode()
     code = _write(written, options.quiet)
     if not code and options.cut:

@@ -50,6 +50,23 @@ class Evidence:
         [of] = (each for each in self.properties if each.label == label)
         return None if isinstance(self.stated[label], str) else Letters(of, self.rate is not None)
 
+    def digests(self, path: Path) -> Digests:
+        """Those of the files of a recording, which are computed while it is judged."""
+        return Digests(path)
+
+    def document(
+        self, session: Session, part: Part, recording: Recording, reading: ReadOptions, files: Iterable[File]
+    ) -> Document:
+        """The evidence of a run that has been judged, of a `part` of a recording with these `files`."""
+        return _Judged(session, part, recording, reading).document(self, files)
+
+    def not_covered(self, document: Document, source: Source) -> Iterator[Diagnostic]:
+        """A note for each property that `document` claims nothing of; `source` is the specification."""
+        for each, of in zip(document.properties, self.properties, strict=True):
+            if isinstance(each, NotCovered):
+                message = f"the evidence does not cover `{each.label}`: {each.reason}"
+                yield diagnostic("LTL851", source, of.span, message, help="its verdict is as without `--evidence`")
+
 
 def evidence_by(compiled: Sequence[Compiled], specification: Specification, budget: Budget) -> Evidence:
     """What evidence says of every recording; the certificate of each property may take that `budget`."""
@@ -95,7 +112,7 @@ def _file(name: str, path: Path) -> File:
 
 
 @dataclass(frozen=True)
-class Judged:
+class _Judged:
     """A run that has been judged, of a `part` of a recording, read with these options."""
 
     session: Session
@@ -173,13 +190,3 @@ class Judged:
             if field.topic in topics and signal.name not in self.recording.columns:
                 return f"`{signal.name}` is not read: {self.recording.absence(signal.name)}"
         return ""
-
-
-def not_covered(
-    document: Document, source: Source, properties: Iterable[PropertySpecification]
-) -> Iterator[Diagnostic]:
-    """A note for each property that `document` claims nothing of."""
-    for each, of in zip(document.properties, properties, strict=True):
-        if isinstance(each, NotCovered):
-            message = f"the evidence does not cover `{each.label}`: {each.reason}"
-            yield diagnostic("LTL851", source, of.span, message, help="its verdict is as without `--evidence`")

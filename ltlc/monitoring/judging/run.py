@@ -8,9 +8,8 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from time import perf_counter_ns
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from ltlc.assurance.evidence.document import Document
 from ltlc.backends.python.load import load_plan
 from ltlc.base.codes import diagnostic
 from ltlc.base.diagnostics import Diagnostic, Severity
@@ -26,7 +25,6 @@ from ltlc.inputs.recordings.rows import failure
 from ltlc.inputs.recordings.trails import Trail, Trailing
 from ltlc.monitoring.columns.prepared import Prepared, prepare_all
 from ltlc.monitoring.columns.session import ByBlocks
-from ltlc.monitoring.judging.evidence import Digests, Evidence, Judged, not_covered
 from ltlc.monitoring.judging.part import Part
 from ltlc.monitoring.judging.violations import violations_report, violations_text
 from ltlc.monitoring.later import JudgedTrack, can_recur, letters_of
@@ -40,6 +38,10 @@ from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.verdicts import Verdict
 from ltlc.specification.expressions import Field, Signal
 from ltlc.specification.specification import PropertySpecification, Specification
+
+if TYPE_CHECKING:
+    from ltlc.assurance.evidence.document import Document
+    from ltlc.monitoring.judging.evidence import Evidence
 
 Watcher = Callable[[Block], None]
 """What is reported about each block once it has been judged."""
@@ -209,7 +211,7 @@ class Judge:
         session = Session(plan, self.keep_verdicts, observe, self._track)
         absent = (name for name in readings(plan) if name not in recording.columns)
         session.absences = {name: recording.absence(name) for name in absent}
-        digests = None if self.evidence is None else Digests(path)
+        digests = None if self.evidence is None else self.evidence.digests(path)
         blocks, watch, start = ByBlocks(session, self.prepared), Stopwatch(), perf_counter_ns()
         damage, part = None, Part(path, recording, self.reading)
         try:
@@ -225,8 +227,8 @@ class Judge:
         judged = None if damage is not None and session.time is None else blocks
         evidence = None
         if self.evidence is not None and digests is not None and damage is None:
-            evidence = Judged(session, part, recording, self.reading).document(self.evidence, digests.files())
-            found += not_covered(evidence, self.specification.source, self._properties)
+            evidence = self.evidence.document(session, part, recording, self.reading, digests.files())
+            found += self.evidence.not_covered(evidence, self.specification.source)
         return RunReport(
             str(path),
             None if judged is None else judged.session,
