@@ -114,7 +114,10 @@ def test_of_forged_evidence_nothing_is_stated_and_the_page_says_so(
     assert "nothing is stated or signed" in capsys.readouterr().err
     assert not Path("s.jsonl").exists()
     assert not Path("p.html.sig").exists()
-    assert "Do not rely on this evidence." in Path("p.html").read_text()
+    html = Path("p.html").read_text()
+    assert "Do not rely on this evidence." in html
+    assert "NOT shown, but claimed: Satisfied" in html
+    assert not re.search(r'class="(verdict )?satisfied"', html)
 
 
 @pytest.mark.usefixtures("folder")
@@ -130,6 +133,7 @@ def test_what_was_not_checked_whole_is_not_stated() -> None:
     assert certified("--statement", "s.jsonl", "--page", "p.html", recordings=()) == 3
     assert not Path("s.jsonl").exists()
     assert "Checked in part" in Path("p.html").read_text()
+    assert "Claimed, but not checked whole: Violated" in Path("p.html").read_text()
 
 
 @pytest.mark.usefixtures("folder")

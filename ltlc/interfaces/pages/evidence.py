@@ -23,6 +23,9 @@ SAYS = {
 }
 """What a verdict says of a recording."""
 
+_CLAIMED = {"accepted": "", "unchecked": "Claimed, but not checked whole: ", "refused": "NOT shown, but claimed: "}
+"""What stands before a verdict."""
+
 CHECKED = {
     "recorded": "from the recording to the letters",
     "judge": "from the letters to the verdict",
@@ -98,12 +101,14 @@ def _settings(document: Document) -> Iterator[str]:
 def _claim(claim: Claim, found: CheckedClaim) -> dict[str, Any]:
     lines = claim.letters.count if isinstance(claim.letters, Summed) else len(claim.letters)
     summed = ", as their SHA-256" if isinstance(claim.letters, Summed) else ""
+    state = "refused" if found.is_refused else "accepted" if found.is_accepted else "unchecked"
     return {
         "claim": claim,
-        "says": f"{SAYS[claim.verdict]}, at {seconds_text(claim.decided)} s of the recording's clock",
+        "says": f"{_CLAIMED[state]}{SAYS[claim.verdict]}, at {seconds_text(claim.decided)} s of the recording's clock",
+        "colour": claim.verdict.value if state == "accepted" else state,
         "atoms": [(f"a{number}", each.name, in_words(each.condition)) for number, each in enumerate(claim.atoms)],
         "lines": f"{lines} {'line' if lines == 1 else 'lines'} of letters{summed}",
-        "state": "refused" if found.is_refused else "accepted" if found.is_accepted else "unchecked",
+        "state": state,
         "checks": [_check(each) for each in found.checks],
     }
 
