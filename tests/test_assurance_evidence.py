@@ -37,7 +37,7 @@ from ltlc.assurance.evidence.document import (
     parsed,
     printed,
 )
-from ltlc.assurance.evidence.seam import differences
+from ltlc.assurance.evidence.seam import difference, differences
 from ltlc.inputs.messages.definitions import MessageTypes, shipped
 from ltlc.inputs.recordings.reading import Offset, ReadOptions, Stamp
 from ltlc.semantics.verdicts import Verdict
@@ -219,7 +219,9 @@ def test_a_table_is_not_covered(tmp_path: Path) -> None:
 
 
 def seam(document: Document, text: str) -> list[str]:
-    return list(differences(document, judge_of(text).specification, digest(text)))
+    of = judge_of(text).specification
+    claims = [each for each in document.properties if isinstance(each, Claim)]
+    return [*differences(document, of), *filter(None, (difference(claim, of) for claim in claims))]
 
 
 def test_the_seam_finds_nothing_in_what_was_written(tmp_path: Path) -> None:
