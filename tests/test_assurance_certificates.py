@@ -39,7 +39,7 @@ def objections(subjects: list[Subject], text: str) -> list[str | None]:
 def test_certificates_of_the_specification_pass() -> None:
     checked = check_certificates(SUBJECTS, TEXT)
     assert checked == tuple(map(Checked, ["stop_at_sign", "line 4"], [EXACT] * 2, [None] * 2, parse(TEXT)))
-    assert [each.certified for each in checked] == parse(TEXT)
+    assert tuple(each.certified for each in checked) == parse(TEXT)
 
 
 def test_a_state_is_shown_to_be_undecided_by_letters_that_go_on_for_ever_where_there_are_such() -> None:
