@@ -236,6 +236,8 @@ def changed(data: Any) -> Iterator[Any]:
             yield data + 1
         case str():
             yield f"{data}x"
+        case _:
+            raise AssertionError(data)
 
 
 def test_whatever_is_changed_in_what_an_atom_is_changes_its_words() -> None:
