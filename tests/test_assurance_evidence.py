@@ -133,7 +133,9 @@ def test_a_recording_with_another_value_is_refused_if_a_letter_changes_and_the_d
     document = evidence_of(text, write_bag(tmp_path / "bag", rows))
     rows[1] = (rows[1][0], "/x", make("std_msgs/msg/Float64", data=2.5))
     other = write_bag(tmp_path / "bag", rows)
-    assert said_of(document, other)[0] == 1  # the files are others
+    code, [line] = said_of(document, other)
+    assert code == 1
+    assert line.startswith("REFUSED: bag/bag.mcap is another file")
     recordings = evidence_of(text, other).head.recordings
     code, lines = said_of(replace(document, head=replace(document.head, recordings=recordings)), other)
     assert code == 1

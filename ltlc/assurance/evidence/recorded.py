@@ -1327,9 +1327,7 @@ def check(evidence: Path, others: list[Path], fill: Path | None) -> int:
         if len(found) > 1:
             print(f"recording {', '.join(wanted)}")
         if path is None:
-            others_of = (files for files in recordings.values() if files.keys() == wanted.keys())
-            other = next((name for files in others_of for name in files if files[name] != wanted[name]), None)
-            print(f"REFUSED: {other} bytes: another SHA-256" if other else f"REFUSED: no files {', '.join(wanted)}")
+            print(f"REFUSED: {missing(wanted, recordings.values())}")
             codes.append(1)
             continue
         codes.append(check_document(document, path, print))
@@ -1338,6 +1336,16 @@ def check(evidence: Path, others: list[Path], fill: Path | None) -> int:
             for document in found:
                 file.writelines(filled(document))
     return 1 if 1 in codes else max(codes)
+
+
+def missing(wanted: dict[str, str], recordings: Iterable[dict[str, str]]) -> str:
+    """Which file is another one, if there is a recording with files of these names."""
+    names = {name.rpartition(" ")[0] for name in wanted}
+    for files in recordings:
+        if {name.rpartition(" ")[0] for name in files} == names:
+            [other, *_] = (name for name in wanted if files.get(name) != wanted[name])
+            return f"{other.rpartition(' ')[0]} is another file: it has not the size and the SHA-256 that are written"
+    return f"there is no recording with the files {', '.join(sorted(names))}"
 
 
 def is_certificates(path: Path) -> bool:
