@@ -1222,7 +1222,8 @@ def check_document(document: Document, path: Path, say: Callable[[str], None]) -
         try:
             run = check_claim(claim, recorded, head, recorded.first, ends)
             assert claim.found is not None
-            say(f"{label}: {len(run.times)} instants have the letters of {len(claim.found[0])} lines")
+            counts = plural(len(run.times), "instant"), plural(len(claim.found[0]), "line")
+            say(f"{label}: the letters are as stated: {', '.join(counts)}")
         except NotCovered as error:
             say(f"{label}: NOT COVERED: {error}")
             codes.append(2)
@@ -1279,6 +1280,11 @@ def problem_with(claim: Part, run: Run, times: Array, letters: Array) -> str:
     if same == len(times):
         return f"there is no line {same + 1}"
     return f"line {same + 1} is at {times[same]}{word_of(int(letters[same]))}"
+
+
+def plural(count: int, what: str) -> str:
+    """So many of something."""
+    return f"{count} {what}{'' if count == 1 else 's'}"
 
 
 def filled(document: Document) -> Iterator[str]:
