@@ -70,15 +70,12 @@ class Numbers:
         return True
 
     def _looked_up(self, places: Places) -> Places:
-        found = self._table.take(places)
-        if len(found) and found.min() < 0:
-            is_here = np.zeros(len(self._table), np.bool_)
-            is_here[places] = True
-            new = np.flatnonzero(is_here & (self._table < 0))
-            self._table[new] = np.arange(len(self), len(self) + len(new))
-            self._whole = np.concatenate((self._whole, new + self._least))
-            found = self._table.take(places)
-        return found
+        is_here = np.zeros(len(self._table), np.bool_)
+        is_here[places] = True
+        new = np.flatnonzero(is_here & (self._table < 0))
+        self._table[new] = np.arange(len(self), len(self) + len(new))
+        self._whole = np.concatenate((self._whole, new + self._least))
+        return self._table.take(places)
 
 
 def _whole(column: Array) -> Places | None:

@@ -48,6 +48,11 @@ class Part:
     are_taken: Mask
 
     @cached_property
+    def taken(self) -> Places:
+        """Those of them, by place."""
+        return np.flatnonzero(self.are_taken)
+
+    @cached_property
     def going(self) -> Places:
         """Those of them that nothing decides, by place."""
         return np.flatnonzero(self.are_taken & (self.followed.groups.deciding < 0))
@@ -127,22 +132,27 @@ class BySlices:
         known.begin(runs.numbers, self._count + runs.order.take(runs.firsts))
         taken = self._follow(messages, messages.steps, messages.until)
         for part in taken.parts:
-            self._advance(messages, part)
+            self._advance(part)
+            if taken.alone:
+                self._see(messages, part.followed.runs, part.taken)
         self._number(taken, runs)
         for part in taken.parts:
             self._date(taken, part)
             self._decide(taken, part)
         for number, those in taken.alone.items():
             self._take_alone(taken, number, those)
-        self._see(messages, runs, np.ones(len(runs.numbers), np.bool_))
+        self._see(messages, runs, None)
         self._conclude(taken)
         self._count += len(messages)
 
-    def _see(self, messages: Elements, runs: Runs, of: Mask) -> None:
-        """The slices of these of the `runs` know their last messages with an id."""
-        lasts = messages.lasts.take(runs.lasts)
-        of = of & (lasts >= 0)
-        numbers, lasts = runs.numbers[of], lasts[of]
+    def _see(self, messages: Elements, runs: Runs, at: Places | None) -> None:
+        """The slices of the `runs` at these places, None for all, know their last messages with an id."""
+        lasts, numbers = messages.lasts.take(runs.lasts), runs.numbers
+        if messages.shared.signals:
+            has_one = np.flatnonzero(lasts >= 0)
+            at = has_one if at is None else np.intersect1d(at, has_one, assume_unique=True)
+        if at is not None:
+            lasts, numbers = lasts.take(at), numbers.take(at)
         self._known.see(numbers, messages.own.latest, lasts)
         if messages.shared.signals:
             self._known.letters[numbers] = messages.shared.held(messages.own.letters).take(lasts)
@@ -176,10 +186,10 @@ class BySlices:
             alone |= dict.fromkeys(silent.tolist(), runs.order[:0])
         return Taken(messages, parts, alone, self._owed)
 
-    def _advance(self, messages: Elements, part: Part) -> None:
+    def _advance(self, part: Part) -> None:
         """Put slices into the states after the messages that they took, and before that which decides them."""
         known, groups, runs = self._known, part.followed.groups, part.followed.runs
-        numbers, states = runs.numbers[part.are_taken], groups.lasts.take(part.going)
+        numbers, states = runs.numbers.take(part.taken), groups.lasts.take(part.going)
         is_owed = self._tables.machine.outputs == OWED
         self._owed -= int(np.count_nonzero(is_owed.take(known.states.take(numbers))))
         self._owed += int(np.count_nonzero(is_owed.take(states)))
@@ -187,16 +197,15 @@ class BySlices:
         if not known.dues:
             return
         for due, after in zip(known.dues, part.dues, strict=True):
-            due[numbers] = after[part.are_taken]
-        known.next[numbers] = np.minimum.reduce([due[numbers] for due in known.dues])
-        self._see(messages, runs, part.are_taken)
+            due[numbers] = after.take(part.taken)
+        known.next[numbers] = np.minimum.reduce([due.take(numbers) for due in known.dues])
 
     def _number(self, taken: Taken, runs: Runs) -> None:
         """Count the messages that are steps, and those that are none."""
         messages, track = taken.messages, self.slices.track
         late = self._late(taken, runs)
         if messages.invalid is None and not messages.early and not len(late):
-            taken.steps = track.steps + np.arange(len(messages) + 1)
+            taken.steps = np.arange(track.steps, track.steps + len(messages) + 1)
         else:
             is_counted = np.ones(len(messages), np.bool_)
             is_counted[: messages.early] = is_counted[late] = False
@@ -210,6 +219,8 @@ class BySlices:
 
     def _late(self, taken: Taken, runs: Runs) -> Places:
         """The messages of `runs` after those that decide them."""
+        if not taken.alone and not any(len(part.followed.decisions[0]) for part in taken.parts):
+            return runs.order[:0]
         lasts, numbers = np.full(len(runs.numbers), len(taken.messages)), np.arange(len(taken.messages))
         for part in taken.parts:
             at, steps, _ = part.followed.decisions
