@@ -130,14 +130,15 @@ class Runs:
 def runs_of(numbers: Places, messages: Places | None) -> Runs:
     """Those of `messages`, ascending, None for all, in which the ids have these `numbers`."""
     given = numbers if messages is None else numbers.take(messages)
-    bits = len(given).bit_length()
-    order = given << bits
-    order |= np.arange(len(given))
-    order.sort()
-    of = order >> bits
-    order &= (1 << bits) - 1
+    bits, kind = len(given).bit_length(), np.int64
+    if int(given.max(initial=0)) < 1 << 31 - bits:
+        kind = np.int32  # which are sorted in half the time
+    keys = given.astype(kind) << kind(bits)
+    keys |= np.arange(len(given), dtype=kind)
+    keys.sort()
+    of, order = keys >> bits, (keys & kind((1 << bits) - 1)).astype(np.int64)
     is_first = np.ones(len(of), np.bool_)
     np.not_equal(of[1:], of[:-1], out=is_first[1:])
     firsts = np.flatnonzero(is_first)
     lengths = np.diff(firsts, append=len(of))
-    return Runs(of.take(firsts), order if messages is None else messages.take(order), firsts, lengths)
+    return Runs(of.take(firsts).astype(np.int64), order if messages is None else messages.take(order), firsts, lengths)

@@ -211,7 +211,7 @@ class BySlices:
             is_counted[: messages.early] = is_counted[late] = False
             if messages.invalid is not None:
                 is_none = np.zeros(len(messages.own), np.bool_)
-                is_none[messages.places[is_counted & messages.invalid]] = True
+                is_none[messages.lasts[is_counted & messages.invalid]] = True
                 count_invalid(track, Stretch(messages.own.steps, np.flatnonzero(~is_none), ()))
                 is_counted &= ~messages.invalid
             taken.steps = track.steps + np.concatenate(([0], is_counted.cumsum()))
@@ -277,7 +277,7 @@ class BySlices:
         time = int(taken.messages.times[message])
         one = self._slice(taken, number, message, time)
         one.steps = int(taken.steps[message])
-        if taken.messages.is_own(message):
+        if taken.messages.is_own[message]:
             one.hear(time, self.slices.cut.own_ages)
         one.step(time, taken.messages.values(self.slices.cut, message, one))
         assert one.decided_at is not None
