@@ -139,7 +139,7 @@ def _merged(
     Of each its row, whether it has an id, its number, and the last message with an id that came to its slice; -1 if
     there was none.
     """
-    if not len(shared):
+    if not len(shared) or not len(known.numbers):
         return rows, np.ones(len(rows), np.bool_), numbers, places
     count, first = len(known.numbers), np.full(len(known.numbers), -1)
     is_new = np.flatnonzero(known.begins.take(numbers) >= NEVER)[::-1]

@@ -75,6 +75,11 @@ class Taken:
     changes: list[tuple[Place, int]] = field(default_factory=list)
     violated: list[tuple[Place, int, Slice, Failure]] = field(default_factory=list)
 
+    @property
+    def is_disturbed(self) -> bool:
+        """Whether some slice is decided, or takes messages by itself."""
+        return bool(self.alone) or any(len(part.followed.decisions[0]) for part in self.parts)
+
 
 def refusal(plan: Plan, slices: Slices, of: Prepared, others: Others) -> str:
     """Why columns cannot judge a property of each id that reads `others`; empty if they can."""
@@ -133,7 +138,7 @@ class BySlices:
         taken = self._follow(messages, messages.steps, messages.until)
         for part in taken.parts:
             self._advance(part)
-            if taken.alone:
+            if self._known.dues and taken.is_disturbed:
                 self._see(messages, part.followed.runs, part.taken)
         self._number(taken, runs)
         for part in taken.parts:
@@ -219,7 +224,7 @@ class BySlices:
 
     def _late(self, taken: Taken, runs: Runs) -> Places:
         """The messages of `runs` after those that decide them."""
-        if not taken.alone and not any(len(part.followed.decisions[0]) for part in taken.parts):
+        if not taken.is_disturbed:
             return runs.order[:0]
         lasts, numbers = np.full(len(runs.numbers), len(taken.messages)), np.arange(len(taken.messages))
         for part in taken.parts:
