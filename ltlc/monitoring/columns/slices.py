@@ -7,18 +7,16 @@ comes due, and takes the rest of the block by itself; and for the step that viol
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
-from functools import cached_property, partial
+from collections.abc import Iterator, Sequence
+from functools import partial
 from itertools import chain
 
 import numpy as np
 
 from ltlc.inputs.recordings.blocks import Block, Places
-from ltlc.monitoring.columns.alone import Place, take_alone
-from ltlc.monitoring.columns.bits import Mask
+from ltlc.monitoring.columns.alone import take_alone
 from ltlc.monitoring.columns.elements import Elements, elements
-from ltlc.monitoring.columns.following import Followed, follow
+from ltlc.monitoring.columns.following import follow
 from ltlc.monitoring.columns.ids import Runs
 from ltlc.monitoring.columns.known import Known
 from ltlc.monitoring.columns.messages import messages_of
@@ -26,8 +24,9 @@ from ltlc.monitoring.columns.others import Others
 from ltlc.monitoring.columns.prepared import Prepared
 from ltlc.monitoring.columns.series import UnsupportedError
 from ltlc.monitoring.columns.tables import Tables
+from ltlc.monitoring.columns.taken import Part, Taken
 from ltlc.monitoring.columns.tracks import Stretch, count_invalid
-from ltlc.runtime.properties import Failure, Moment
+from ltlc.runtime.properties import Moment
 from ltlc.runtime.session import Plan
 from ltlc.runtime.slice_ids import Slice
 from ltlc.runtime.slice_steps import Slices
@@ -37,48 +36,6 @@ from ltlc.semantics.verdicts import Verdict
 
 OWED = list(Verdict).index(Verdict.PRESUMABLY_VIOLATED)
 WELL = list(Verdict).index(Verdict.SATISFIED)
-
-
-@dataclass(frozen=True)
-class Part:
-    """Those of the runs that were `followed` of which `are_taken` is true; their clocks are then due at `dues`."""
-
-    followed: Followed
-    dues: Sequence[Places]
-    are_taken: Mask
-
-    @cached_property
-    def taken(self) -> Places:
-        """Those of them, by place."""
-        return np.flatnonzero(self.are_taken)
-
-    @cached_property
-    def going(self) -> Places:
-        """Those of them that nothing decides, by place."""
-        return np.flatnonzero(self.are_taken & (self.followed.groups.deciding < 0))
-
-
-@dataclass
-class Taken:
-    """What a block has done: the `parts`, by number the messages that slices take by themselves, and what came of it.
-
-    Something was `owed` in so many slices before it. `steps` has the number of the step that each message is, or, if it
-    is none, of that after it. `opened` has the messages from which on an obligation is open.
-    """
-
-    messages: Elements
-    parts: Sequence[Part]
-    alone: Mapping[int, Places]
-    owed: int
-    steps: Places = field(default_factory=lambda: np.empty(0, np.int64))
-    opened: list[Places] = field(default_factory=list)
-    changes: list[tuple[Place, int]] = field(default_factory=list)
-    violated: list[tuple[Place, int, Slice, Failure]] = field(default_factory=list)
-
-    @property
-    def is_disturbed(self) -> bool:
-        """Whether some slice is decided, or takes messages by itself."""
-        return bool(self.alone) or any(len(part.followed.decisions[0]) for part in self.parts)
 
 
 def refusal(plan: Plan, slices: Slices, of: Prepared, others: Others) -> str:
