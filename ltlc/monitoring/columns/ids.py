@@ -70,6 +70,8 @@ class Numbers:
         return True
 
     def _looked_up(self, places: Places) -> Places:
+        if len(self) and ((found := self._table.take(places)) >= 0).all():
+            return found
         is_here = np.zeros(len(self._table), np.bool_)
         is_here[places] = True
         new = np.flatnonzero(is_here & (self._table < 0))
