@@ -10,12 +10,12 @@ from pathlib import Path
 from typing import Any
 
 from edges import drawn
+from program_reference import Run
 from stepping import from_text
 
 from ltlc.compiler import Compiled
 from ltlc.program.expressions import Literal, parts
 from ltlc.program.machine import Machine
-from ltlc.program.reference import Run
 from ltlc.program.types import Type
 from ltlc.specification.specification import Specification
 

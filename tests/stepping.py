@@ -8,6 +8,7 @@ from functools import cache
 from typing import Any
 
 from hypothesis import strategies as st
+from program_reference import is_nan
 from strategies import predicates
 
 from ltlc.automata import Budget
@@ -16,7 +17,6 @@ from ltlc.backends.python.load import load_plan
 from ltlc.base.source import Source, Span
 from ltlc.compiler import Compiled, compile_specification
 from ltlc.frontend.language import load_text
-from ltlc.program.reference import is_nan
 from ltlc.runtime.rows import ByRows
 from ltlc.runtime.session import Session
 from ltlc.runtime.times import nanoseconds

@@ -15,6 +15,7 @@ from hypothesis import strategies as st
 from lowered import cases, shown
 from machine_mutants import expressions, mutants
 from openings_support import drawn
+from program_reference import is_nan, value
 from stepping import from_text
 from timed import Draw
 from timed import compiled as compiled_in_time
@@ -29,7 +30,6 @@ from ltlc.inputs.messages.definitions import MessageTypes, shipped
 from ltlc.program.expressions import Apply, Count, Expression
 from ltlc.program.functions import Primitive
 from ltlc.program.machine import Machine
-from ltlc.program.reference import is_nan, value
 
 LABELS = [machine.label for machine, _, _ in cases()]
 

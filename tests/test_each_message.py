@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import random
 from collections.abc import Sequence
 from pathlib import Path
@@ -15,6 +16,7 @@ from ltlc.analysis.english import English
 from ltlc.base.errors import UnusableInput
 from ltlc.base.source import Source
 from ltlc.frontend.language import load_text
+from ltlc.runtime.properties import Failure
 from ltlc.runtime.rows import ByRows
 from ltlc.runtime.session import Plan, Session
 from ltlc.runtime.slice_ids import Messages
@@ -138,6 +140,59 @@ def test_each_message_begins_the_property_on_the_rest_of_the_run(text: str) -> N
         assert found.well == sum(t.verdict is Verdict.SATISFIED for t in expected)
         undecided = sum(not t.verdict.is_permanent for t in expected)
         assert sum(1 + one.more for one in found.slices.values()) == undecided
+
+
+CROWDED = (
+    "eventually kind == 2 within 60 ns",
+    "eventually (kind == 2 and v < 3) within 90 ns",
+    "always (kind == 1 implies eventually kind == 2 within 30 ns)",
+    "always (kind == 1 implies always v < 3 for 30 ns)",
+    "always (kind == 2 implies eventually (v < 3 and kind == 0) within 20 ns)",
+)
+"""Properties of which many instances wait in one state."""
+
+
+def crowded(chance: random.Random) -> tuple[list[Row], int]:
+    """Rows of which many open an instance, the first ones are known before, and the last ones may have NaN."""
+    known = {"id": 1, "kind": 0, "dist": 1.0}
+    rows: list[Row] = [(0, "/track", known), (0, "/odom", {"v": 1.0})]
+    openers = chance.randint(5, 25)
+    for number in range(2 * openers + 20):
+        time = rows[-1][0] + chance.choice((0, 1, 3, 9))
+        if number < 2 * openers and number % 2:
+            rows.append((time, "/estop", {"stop": False}))
+        elif chance.random() < 0.7:
+            rows.append((time, "/track", {**known, "kind": chance.choices((0, 1, 2), (8, 2, 1))[0]}))
+        else:
+            rows.append(
+                (time, "/odom", {"v": chance.choice((0.5, 2.0, 5.0, math.nan if number > 2 * openers else 2.0))})
+            )
+    return rows, rows[-1][0] + chance.choice((0, 10, 200))
+
+
+@pytest.mark.parametrize("text", CROWDED)
+def test_each_of_many_open_messages_is_judged_as_the_only_one(text: str) -> None:
+    chance = random.Random(text)
+    each, plain = plan_of(f"{HEAD}p: each new stop: {text}"), plan_of(f"{HEAD}p: {text}")
+    for _ in range(HOW_MANY):
+        rows, until = crowded(chance)
+        openers = [n for n, row in enumerate(rows) if row[1] == "/estop"]
+        expected = [judged_from(plain, rows, n, until) for n in openers]
+        track = instances(each, rows, until)
+        found = messages_of(track)
+        decided = sorted(_told(t.decided_at) for t in expected if t.decided_at and t.verdict is Verdict.VIOLATED)
+        assert sorted(told for v in found.violated.values() for told in [_told(v.failure)] * (1 + v.more)) == decided
+        assert found.well == sum(t.verdict is Verdict.SATISFIED for t in expected)
+        owed = sorted(t.open_since.time for t in expected if t.open_since)
+        assert (
+            sorted(o.open_since.time for o in found.slices.values() if o.open_since for _ in range(1 + o.more)) == owed
+        )
+        assert all(0 < one.steps <= track.steps for one in found.slices.values())
+
+
+def _told(failure: Failure) -> tuple[int, str]:
+    """When it was, and the values, but whether a message opened this instance."""
+    return failure.time, str([pair for pair in failure.values if not pair[0].startswith("new ")])
 
 
 def _without_nan(rows: Sequence[Row]) -> list[Row]:

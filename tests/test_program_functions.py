@@ -10,6 +10,7 @@ import subprocess
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
+import program_reference as reference
 import pytest
 from conditions_support import EVERY, ROUNDS, cases, conditions, hostile, wanted
 
@@ -20,7 +21,6 @@ from ltlc.backends.operators import flat as flat_in_c
 from ltlc.backends.python.code import flat
 from ltlc.backends.python.expressions import python_speller
 from ltlc.backends.spelling import NotInTargetError
-from ltlc.program import reference
 from ltlc.program.expressions import Apply, Each, Expression, makes_nan, parts
 from ltlc.program.functions import ROWS, Nan, Primitive
 from ltlc.program.lowering import condition, read

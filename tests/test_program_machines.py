@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 from lowered import cases, value_of
+from program_reference import Run, is_nan, value
 from stepping import from_text
 
 from ltlc.backends.python.load import load_plan
@@ -16,7 +17,6 @@ from ltlc.compiler import Compiled
 from ltlc.program.expressions import Apply, Count, Each, Expression, Held, Kept, Literal, News
 from ltlc.program.functions import Primitive
 from ltlc.program.normal import normal, positive
-from ltlc.program.reference import Run, is_nan, value
 from ltlc.program.types import DOUBLE, Scalar, Type
 from ltlc.runtime.times import NEVER
 from ltlc.semantics.timed_atoms import counts_of, news_that_counts

@@ -1,8 +1,8 @@
 """The lowered program of a property: a machine as frozen, typed data, of no target, with one semantics, written here.
 
 Between the calls of whoever runs it, a machine has a state, a verdict, a due time for each of its clocks, the value of
-each register, a count `invalid`, and the values of its inputs at the last step. `ltlc.program.reference` is this text
-as code.
+each register, a count `invalid`, and the values of its inputs at the last step. `tests/program_reference.py` is this
+text as code.
 
 - *Begin*, when the session begins: state 0, verdict NOT_STARTED. An age is due its duration later, no other clock;
   occurrences are late.

@@ -3,13 +3,22 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Sequence
 from operator import attrgetter
 
-from ltlc.runtime.episodes import state_of
+from ltlc.runtime.episodes import forked, state_of
+from ltlc.runtime.properties import Monitor
+from ltlc.runtime.sampling import Value
 from ltlc.runtime.slice_ids import Messages, Slice
 from ltlc.runtime.slice_keys import Opener
 from ltlc.runtime.times import NEVER
 from ltlc.semantics.verdicts import Verdict
+
+LATER = NEVER - 1
+"""When no clock is ever due that is set."""
+
+FEW = 4
+"""Fewer slices are not worth asking which of them a step changes."""
 
 
 class Openings:
@@ -28,6 +37,58 @@ class Openings:
         is_timed = before.property.timed
         self._quick = attrgetter("state", "due") if is_timed else attrgetter("state")
         self._uncounted: Counter[str] = Counter()
+        self._probe = self._made_probe()
+
+    def _made_probe(self) -> Monitor | None:
+        """A monitor to try steps of instances; None if states do not decide these."""
+        of, monitor = self.before.property, self.before.monitor
+        known = {
+            "state",
+            "verdict",
+            "invalid",
+            "due",
+            *(each.due for each in of.clocks),
+        }
+        has_more = of.events or of.excused or of.ages or known != vars(monitor).keys()
+        is_open = all(not each.inner and each.closes is None for each in of.scopes)
+        is_simple = len(of.clocks) == 1 and is_open and not has_more
+        return forked(monitor) if is_simple else None
+
+    def changed(
+        self, time: int, values: Sequence[Value], steps: int, given: list[Slice]
+    ) -> list[Slice]:
+        """Those that a step may change, after so many; the others have taken it.
+
+        Most instances wait in one of a few states, until their clock is due. If that is
+        later, all of a state step as one does whose clock is due after all others.
+        """
+        if self._probe is None or len(given) < FEW:
+            return given
+        found, stays = [], dict[int, bool]()
+        for one in given:
+            # Due later, and ever, is nothing but the clock: a step that is due `again`
+            # would have been taken, and after one that was late nothing is due.
+            monitor = one.monitor
+            if time < monitor.due < NEVER and one is not self.before:
+                state = monitor.state
+                if state not in stays:
+                    stays[state] = self._stays(self._probe, state, time, values)
+                if stays[state]:
+                    one.steps, one.judged_on = steps + 1, values
+                    continue
+            found.append(one)
+        return found
+
+    def _stays(
+        self, probe: Monitor, state: int, time: int, values: Sequence[Value]
+    ) -> bool:
+        """Whether a step changes nothing in a state, and sets no clock."""
+        [clock] = self.before.property.clocks
+        probe.state, probe.due, probe.invalid = state, LATER, 0
+        setattr(probe, clock.due, LATER)
+        probe.step(time, *values)
+        is_set = probe.due != LATER or getattr(probe, clock.due) != LATER
+        return probe.state == state and not is_set and not probe.invalid
 
     def open(self) -> Slice | None:
         """A message comes: an instance that has had no step; None without a place."""

@@ -118,13 +118,24 @@ class Slices(ToldSlices):
             if key.gone is not None and place is not None:
                 self._miss(time, key, key.gone, set(map(id_of, values[place])))
         if shared.topics:
-            for one in [s for s in self._going_on() if s.id not in reached]:
+            going_on = [s for s in self._going_on() if s.id not in reached]
+            for one in self._changed(time, row.rest, going_on):
                 self._give(time, one, row.rest, values)
 
     def _going_on(self) -> list[Slice]:
         """The slices that are not decided; after instances, the run before any."""
         before = () if self.openings is None else (self.openings.before,)
         return [*self.ids.slices.values(), *before]
+
+    def _changed(self, time: int, part: Part, given: list[Slice]) -> list[Slice]:
+        """Those of the slices that their part of a row may change; others have it."""
+        if self.openings is None or not part.is_step:
+            return given
+        known = self.openings.before.known
+        mark(known, part.news, is_new=True)
+        values = self._look(known)
+        mark(known, part.news, is_new=False)
+        return self.openings.changed(time, values, self.track.steps, given)
 
     def _share(self, time: int, part: Part, given: Sequence[Value]) -> None:
         """Take what all slices share."""

@@ -73,6 +73,10 @@ class TickedSlices(Slices):
             one.renew(time)
         self._settle(one)
 
+    def _changed(self, time: int, part: Part, given: list[Slice]) -> list[Slice]:
+        """All: each keeps what it gets for the next tick."""
+        return given
+
     def _open(self, time: int, row: Row, values: Sequence[Value]) -> Slice | None:
         """A message opens nothing: the next tick does, if it has heard of any."""
         return None

@@ -34,7 +34,7 @@ def take_alone(
         if _is_decided(found, one, messages, time):
             return found
         was_new = slices.is_as_new(one)
-        if messages.is_own(message):
+        if messages.is_own[message]:
             one.hear(time, slices.cut.own_ages)
         one.steps = int(steps[message])
         previous = one.step(time, messages.values(slices.cut, message, one))

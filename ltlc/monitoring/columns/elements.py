@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 
@@ -27,16 +28,17 @@ MOST = 1 << 17
 class Elements:
     """Messages in `rows` of a block, to the slices with these `numbers`, and none else before the row `end`.
 
-    Each is the one of the `own` messages at one of the `places`, or, at -1, a message that is `shared`. `known` has the
-    letters that held in slices before.
+    Each is one of the `own` messages, or a message that is `shared`. Which own one it is, or which was the last one of
+    its slice, is in `lasts`; -1 if none was. `known` has the letters that held in slices before.
     """
 
     own: Messages
     shared: Shared
     known: Bytes
     rows: Places
-    places: Places
+    is_own: Mask
     numbers: Places
+    lasts: Places
     end: int
 
     def __len__(self) -> int:
@@ -71,7 +73,7 @@ class Elements:
     @cached_property
     def invalid(self) -> Mask | None:
         """Which are no steps because something is NaN; None if none is."""
-        return None if self.own.invalid is None else self.own.invalid.take(self.places)
+        return None if self.own.invalid is None else self.own.invalid.take(self.lasts)
 
     @cached_property
     def steps(self) -> Runs:
@@ -84,31 +86,15 @@ class Elements:
     def letters(self) -> Bytes:
         """The letter of each."""
         if not self.shared.signals:
-            return self.own.letters if self.is_whole else self.own.letters.take(self.places)
+            return self.own.letters if self.is_whole else self.own.letters.take(self.lasts)
         letters = self.shared.held(self.own.letters).take(self.lasts)
         is_new = np.flatnonzero(self.lasts < 0)
         letters[is_new] = self.known.take(self.numbers.take(is_new))
         if self.shared.own_news:
-            is_own = np.flatnonzero(self.places >= 0)
-            letters[is_own] = self.own.letters.take(self.places.take(is_own))
+            is_own = np.flatnonzero(self.is_own)
+            letters[is_own] = self.own.letters.take(self.lasts.take(is_own))
         letters |= self.shared.by_row.take(self.rows)
         return letters
-
-    @cached_property
-    def lasts(self) -> Places:
-        """At each, the last of the messages with an id that came to its slice; -1 if there was none."""
-        if not self.shared.signals:
-            return self.places
-        places, firsts = self.places.take(self.runs.order), self.runs.firsts
-        at = np.where(places >= 0, np.arange(len(places)), 0)
-        at[firsts] = firsts
-        found = np.empty(len(self), np.int64)
-        found[self.runs.order] = places.take(np.maximum.accumulate(at))
-        return found
-
-    def is_own(self, message: int) -> bool:
-        """Whether one has an id."""
-        return bool(self.places[message] >= 0)
 
     def values(self, cut: Cut, message: int, one: Slice) -> list[Value]:
         """What the property reads at one of them, which is of this slice."""
@@ -120,7 +106,7 @@ class Elements:
             elif wanted.signal in self.shared.signals:
                 found.append(self.shared.value(wanted, row))
             elif isinstance(wanted, New):
-                found.append(self.is_own(message))
+                found.append(bool(self.is_own[message]))
             else:
                 found.append(self.own.steps.value(wanted, last) if last >= 0 else one.judged_on[place])
         return found
@@ -147,27 +133,39 @@ def elements(own: Messages, shared: Shared, known: Known, numbers: Places) -> It
 
 def _merged(
     rows: Places, places: Places, numbers: Places, shared: Places, known: Known
-) -> tuple[Places, Places, Places]:
-    """The messages with an id, and in the rows `shared` one of every slice that there is and that has none there."""
-    if not len(shared):
-        return rows, places, numbers
-    is_new = np.flatnonzero(known.begins.take(numbers) >= NEVER)
-    _, firsts = np.unique(numbers.take(is_new), return_index=True)
-    born = is_new.take(np.sort(firsts))
+) -> tuple[Places, Mask, Places, Places]:
+    """The messages with an id, and in the rows `shared` one of every slice that there is and that has none there.
+
+    Of each its row, whether it has an id, its number, and the last message with an id that came to its slice; -1 if
+    there was none.
+    """
+    if not len(shared) or not len(known.numbers):
+        return rows, np.ones(len(rows), np.bool_), numbers, places
+    count, first = len(known.numbers), np.full(len(known.numbers), -1)
+    is_new = np.flatnonzero(known.begins.take(numbers) >= NEVER)[::-1]
+    first[numbers.take(is_new)] = is_new
+    born = np.sort(first[first >= 0])
     live = np.concatenate((known.going(), numbers.take(born)))
     counts = len(live) - len(born) + rows.take(born).searchsorted(shared)
     of = live.take(np.arange(int(counts.sum())) - (counts.cumsum() - counts).repeat(counts))
-    given, at = shared.repeat(counts), rows.searchsorted(shared)
-    own = np.where(np.append(rows, -1).take(at) == shared, np.append(numbers, -1).take(at), -1)
+    at, ends = rows.searchsorted(shared), rows.searchsorted(shared, "right")
+    given = np.arange(len(shared)).repeat(counts)
+    own = np.where(at < ends, np.append(numbers, -1).take(at), -1)
     if (own >= 0).any():
-        is_other = own.repeat(counts) != of
-        given, of = given[is_other], of[is_other]
-        counts = np.diff(given.searchsorted(shared), append=len(given))
-    before = np.concatenate(([0], counts.cumsum())).take(shared.searchsorted(rows))
-    is_own = np.zeros(len(rows) + len(given), np.bool_)
-    is_own[before + np.arange(len(rows))] = True
-    is_other = ~is_own
-    columns = [np.full(len(is_own), -1) for _ in range(3)]
-    for column, mine, theirs in zip(columns, (rows, places, numbers), (given, -1, of), strict=True):
-        column[is_own], column[is_other] = mine, theirs
-    return columns[0], columns[1], columns[2]
+        is_other = np.flatnonzero(own.take(given) != of)
+        given, of = given.take(is_other), of.take(is_other)
+        counts = np.bincount(given, minlength=len(shared))
+    since = np.arange(len(shared) + 1).repeat(np.diff(ends, prepend=0, append=len(rows)))
+    mine = np.concatenate(([0], counts.cumsum())).take(since) + np.arange(len(rows))
+    theirs = ends.take(given) + np.arange(len(given))
+    last = np.full((len(shared) + 1) * count, -1)
+    last[since * count + numbers] = places
+    for before, after in pairwise(last.reshape(-1, count)):  # `np.maximum.accumulate` takes four times as long
+        np.maximum(before, after, out=after)
+    is_own = np.zeros(len(mine) + len(theirs), np.bool_)
+    is_own[mine] = True
+    pairs = (rows, shared.take(given)), (numbers, of), (places, last.take(given * count + of))
+    columns = [np.empty(len(is_own), np.int64) for _ in pairs]
+    for column, pair in zip(columns, pairs, strict=True):
+        column[mine], column[theirs] = pair
+    return columns[0], is_own, columns[1], columns[2]

@@ -30,7 +30,7 @@ def run_clocks(tables: Tables, atoms: Sequence[Bits], count: int, before: int) -
     """As `run`, with one property; and where in these steps each clock is set."""
     groups = _groups(tables, [atoms], [before])
     [passed] = groups.passed(count)
-    return passed, [groups.settings(clock, passed.steps) for clock in tables.clocks]
+    return passed, [groups.settings(clock, np.array([passed.steps])) for clock in tables.clocks]
 
 
 def _groups(tables: Tables, columns: Sequence[Sequence[Bits]], before: Sequence[int]) -> Groups:
@@ -48,7 +48,7 @@ def groups_of(tables: Tables, keys: Keys, places: Places | None, firsts: Places,
     """
     starts = (firsts if places is None else places.searchsorted(firsts)) * (8 // tables.size)
     after = tables.constant.take(keys)
-    after[starts] = tables.after[states, keys[starts]]
+    after[starts] = tables.after.reshape(-1).take(np.multiply(states, tables.width, dtype=np.int64) + keys.take(starts))
     at = np.flatnonzero(after != QUIET)
     if len(at) < len(keys):
         after, keys, starts = after.take(at), keys.take(at), at.searchsorted(starts)

@@ -9,11 +9,11 @@ from functools import cached_property
 import numpy as np
 
 from ltlc.inputs.recordings.blocks import Places
-from ltlc.monitoring.columns.bits import Bytes, Mask
+from ltlc.monitoring.columns.bits import Bytes
 from ltlc.monitoring.columns.follow import groups_of
 from ltlc.monitoring.columns.groups import Groups, Passed
 from ltlc.monitoring.columns.ids import Runs
-from ltlc.monitoring.columns.tables import Sets, States, Tables
+from ltlc.monitoring.columns.tables import States, Tables
 from ltlc.runtime.times import NEVER
 from ltlc.semantics.durations import Nanoseconds
 
@@ -39,26 +39,17 @@ class Followed:
 
         Messages come at `times`, clocks were due `before`, and after its last message a run goes on `until` then.
         """
-        at, steps, _ = self.decisions
+        at, decided, _ = self.decisions
         ends, limits = np.full(len(self.runs.numbers), until), self.runs.lengths.copy()
-        ends[at], limits[at] = times[self.runs.message(at, steps)], steps
+        ends[at], limits[at] = times[self.runs.message(at, decided)], decided
         after, first = [], np.full(len(ends), NEVER)
         for sets, clock, due in zip(self.groups.tables.clocks, self.groups.tables.machine.clocks, before, strict=True):
-            runs, set_at, starts = self._set(sets, times, limits)
+            runs, steps, starts = self.groups.settings(sets, limits)
+            set_at = times.take(self.runs.message(runs, steps))
             found, early = _dues(runs, set_at, np.where(starts, set_at + clock.duration, NEVER), due, ends)
             after.append(found)
             first = np.minimum(first, early)
         return after, first
-
-    def _set(self, sets: Sets, times: Places, limits: Places) -> tuple[Places, Places, Mask]:
-        """In which runs a clock is set before these steps, when, and whether it is started there."""
-        firsts = self.groups.firsts * 8
-        places, starts = self.groups.settings(sets, NEVER)
-        runs = firsts.searchsorted(places, "right") - 1
-        steps = places - firsts[runs]
-        is_taken = steps < limits[runs]
-        runs, steps = runs[is_taken], steps[is_taken]
-        return runs, times[self.runs.message(runs, steps)], starts[is_taken]
 
 
 def _dues(runs: Places, set_at: Places, dues: Places, before: Places, ends: Places) -> tuple[Places, Places]:
@@ -66,12 +57,13 @@ def _dues(runs: Places, set_at: Places, dues: Places, before: Places, ends: Plac
 
     In `runs`, ascending, it is set to be due at `dues`; it was due `before`.
     """
-    is_last = np.append(runs[1:] != runs[:-1], True)[: len(runs)]
-    is_first = np.append(True, runs[1:] != runs[:-1])[: len(runs)]
-    holds = ends[runs]
-    holds[:-1] = np.where(is_last[:-1], holds[:-1], set_at[1:])
+    firsts = np.flatnonzero(np.diff(runs, prepend=-1))
+    lasts = np.append(firsts, len(runs))[1:] - 1
+    holds = np.append(set_at[1:], 0)[: len(runs)]
+    holds[lasts] = ends.take(runs.take(lasts))
     holds_first, after = ends.copy(), before.copy()
-    holds_first[runs[is_first]], after[runs[is_last]] = set_at[is_first], dues[is_last]
+    of = runs.take(firsts)
+    holds_first[of], after[of] = set_at.take(firsts), dues.take(lasts)
     first = np.where(before < holds_first, before, NEVER)
     early = np.flatnonzero(dues < holds)
     np.minimum.at(first, runs[early], dues[early])

@@ -4,22 +4,29 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ltlc.inputs.recordings.blocks import Places
-from ltlc.monitoring.columns.bits import Mask
+from ltlc.monitoring.columns.bits import Bytes, Mask, lengths
 from ltlc.monitoring.columns.tables import Happens, Sets, States, Tables
 
 PART = 1 << 12
 """So many groups are searched at a time for the last at which something happened, of few properties."""
 
+RARE = 8
+"""Where fewer than one in so many groups are asked for, each is looked for among the properties."""
+
 MANY = 16
 """For more properties, or slices, than so many, all groups are searched."""
 
-Settings = tuple[Places, Mask]
-"""The steps at which a clock is set, ascending, and whether it is started there; else it is stopped."""
+Settings = tuple[Places, Places, Mask]
+"""Of which properties, ascending, at which steps a clock is set, and whether it starts there; otherwise it stops."""
+
+_FIRST = np.array([(1 << count) - 1 for count in range(9)], np.uint8)
+"""The first bits of a byte, so many."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,7 +44,7 @@ class Passed:
     opened: tuple[int, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Groups:
     """The groups that do something, by their numbers `at`, and their places `index` in the tables.
 
@@ -56,27 +63,44 @@ class Groups:
     deciding: Places
     lasts: States
 
+    @cached_property
+    def _numbers(self) -> Places:
+        """Of each group, the number of its property."""
+        return np.arange(len(self.starts)).repeat(lengths(self.starts, len(self.at)))
+
+    def _of(self, groups: Places) -> Places:
+        """The numbers of the properties that these groups, ascending, are of."""
+        if len(groups) * RARE < len(self.at):
+            return self.starts.searchsorted(groups, "right") - 1
+        return self._numbers.take(groups)
+
+    def _where(self, happens: Happens) -> Places:
+        """The groups in which it happens."""
+        return np.flatnonzero(happens.counts.take(self.index) != 0)  # which is faster than without `!= 0`
+
     def passed(self, count: int) -> Iterator[Passed]:
         """What happened to each property in `count` steps."""
         for number, (passed, group) in enumerate(zip(self._before(count), self.deciding.tolist(), strict=True)):
             yield passed if group < 0 else self.until(passed, number, group)
 
-    def settings(self, clock: Sets, count: int) -> Settings:
-        """Where a clock is set in the first `count` steps, of one property."""
+    def settings(self, clock: Sets, counts: Places) -> Settings:
+        """Where a clock is set in so many first steps of each property."""
         starts, stops = clock.starts.take(self.index), clock.stops.take(self.index)
-        groups = np.flatnonzero(starts | stops)
-        starts, stops = (np.unpackbits(bits[groups], bitorder="little") for bits in (starts, stops))
-        at = np.flatnonzero(starts | stops)
-        steps = self._first_steps(groups, np.zeros_like(groups)).take(at >> 3) + (at & 7)
-        end = int(steps.searchsorted(count))
-        return steps[:end], starts[at[:end]].view(np.bool_)
+        groups = np.flatnonzero((starts | stops) != 0)
+        numbers = self._of(groups)
+        firsts = self._first_steps(groups, numbers)
+        are_taken = _FIRST.take(counts.take(numbers) - firsts, mode="clip")
+        is_start, is_stop = (_bits(each.take(groups) & are_taken) for each in (starts, stops))
+        at = np.flatnonzero(is_start | is_stop)
+        of = at >> 3
+        return numbers.take(of), firsts.take(of) + (at & 7), is_start.take(at)
 
     def last(self, happens: Happens, of: Mask) -> Places:
         """The last step of each of these, before a group that decides it, at which it happens; -1 if there is none."""
         numbers = np.flatnonzero(of)
         if len(numbers) > MANY:
-            groups = np.flatnonzero(happens.counts.take(self.index))
-            numbers = self.starts.searchsorted(groups, "right") - 1
+            groups = self._where(happens)
+            numbers = self._of(groups)
             is_taken = of[numbers] & (groups < self.ends[numbers])
         else:
             limits = zip(self.starts[numbers].tolist(), self.ends[numbers].tolist(), strict=True)
@@ -98,8 +122,8 @@ class Groups:
 
     def changes(self, of: Mask) -> Iterator[tuple[Places, Places, Places, Places]]:
         """Where the verdict changes: of which of these, at which step, and from which state to which."""
-        groups = np.flatnonzero(self.tables.changes.counts.take(self.index)) if of.any() else self.starts[:0]
-        numbers = self.starts.searchsorted(groups, "right") - 1
+        groups = self._where(self.tables.changes) if of.any() else self.starts[:0]
+        numbers = self._of(groups)
         groups, numbers = groups[of[numbers]], numbers[of[numbers]]
         first, outputs = self._first_steps(groups, numbers), self.tables.machine.outputs
         for step, (before, after) in enumerate(self._paths(groups)):
@@ -167,3 +191,8 @@ class Groups:
         places = bytes_ if self.places is None else self.places[bytes_]
         steps: Places = (places - self.firsts[numbers]) * 8 + (at & (1 << shift) - 1) * size
         return steps
+
+
+def _bits(packed: Bytes) -> Mask:
+    """Eight booleans for each byte."""
+    return np.unpackbits(packed, bitorder="little").view(np.bool_)

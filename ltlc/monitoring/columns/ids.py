@@ -70,15 +70,14 @@ class Numbers:
         return True
 
     def _looked_up(self, places: Places) -> Places:
-        found = self._table.take(places)
-        if len(found) and found.min() < 0:
-            is_here = np.zeros(len(self._table), np.bool_)
-            is_here[places] = True
-            new = np.flatnonzero(is_here & (self._table < 0))
-            self._table[new] = np.arange(len(self), len(self) + len(new))
-            self._whole = np.concatenate((self._whole, new + self._least))
-            found = self._table.take(places)
-        return found
+        if len(self) and ((found := self._table.take(places)) >= 0).all():
+            return found
+        is_here = np.zeros(len(self._table), np.bool_)
+        is_here[places] = True
+        new = np.flatnonzero(is_here & (self._table < 0))
+        self._table[new] = np.arange(len(self), len(self) + len(new))
+        self._whole = np.concatenate((self._whole, new + self._least))
+        return self._table.take(places)
 
 
 def _whole(column: Array) -> Places | None:
@@ -134,13 +133,14 @@ def runs_of(numbers: Places, messages: Places | None) -> Runs:
     """Those of `messages`, ascending, None for all, in which the ids have these `numbers`."""
     given = numbers if messages is None else numbers.take(messages)
     bits = len(given).bit_length()
-    order = given << bits
-    order |= np.arange(len(given))
-    order.sort()
-    of = order >> bits
-    order &= (1 << bits) - 1
+    keys: Array = given << bits
+    keys |= np.arange(len(given))
+    if bits + int(given.max(initial=0)).bit_length() < 32:
+        keys = keys.astype(np.int32)  # which is sorted in half the time
+    keys.sort()
+    of, order = keys >> bits, (keys & (1 << bits) - 1).astype(np.int64, copy=False)
     is_first = np.ones(len(of), np.bool_)
     np.not_equal(of[1:], of[:-1], out=is_first[1:])
     firsts = np.flatnonzero(is_first)
     lengths = np.diff(firsts, append=len(of))
-    return Runs(of.take(firsts), order if messages is None else messages.take(order), firsts, lengths)
+    return Runs(of.take(firsts).astype(np.int64), order if messages is None else messages.take(order), firsts, lengths)

@@ -53,7 +53,7 @@ def _leap(forward: Forward, found: Stretch, first: int, end: int) -> int:
     machine, names = forward.tables.machine, forward.of.clocks
     before = [getattr(monitor, name) for name in names]
     dues = [_dues(times, *each) for each in zip(machine.clocks, before, settings, strict=True)]
-    nexts = [np.append(times[steps], times[passed.steps]) for steps, _ in settings]
+    nexts = [np.append(times[steps], times[passed.steps]) for _, steps, _ in settings]
     reached = min([passed.steps, *map(partial(_before_due, times), dues, nexts)])
     if reached < passed.steps:
         return _leap(forward, found, first, first + reached // 8 * 8)
@@ -70,7 +70,7 @@ def _leap(forward: Forward, found: Stretch, first: int, end: int) -> int:
 
 def _dues(times: Places, clock: Setting, before: int, settings: Settings) -> Places:
     """When a clock is due that was due `before`, and after each of its settings, at steps at `times`."""
-    steps, starts = settings
+    _, steps, starts = settings
     return np.concatenate(([before], np.where(starts, times[steps] + clock.duration, NEVER)))
 
 

@@ -54,7 +54,8 @@ def messages_of(
     samples = {name: Samples(at, values) for name, values in latest.items()}
     if len(latest) < len(readings):
         samples[cut.variable] = Samples(at, ids)
-    columns = Columns(Block(block.times[rows], samples, {key.topic: at}), cut.sampler, readings, are_ticks=True)
+    times = block.times if len(rows) == len(block.times) else block.times.take(rows)
+    columns = Columns(Block(times, samples, {key.topic: at}), cut.sampler, readings, are_ticks=True)
     derive(columns, [s for s in signals if isinstance(s, Derived)], cut.sampler, of.definitions)
     names = {signal.name for signal in signals}
     steps = columns.steps([i for i in cut.window.inputs if i.signal in names], [key.topic])

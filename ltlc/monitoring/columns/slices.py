@@ -7,18 +7,16 @@ comes due, and takes the rest of the block by itself; and for the step that viol
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
-from functools import cached_property, partial
+from collections.abc import Iterator, Sequence
+from functools import partial
 from itertools import chain
 
 import numpy as np
 
 from ltlc.inputs.recordings.blocks import Block, Places
-from ltlc.monitoring.columns.alone import Place, take_alone
-from ltlc.monitoring.columns.bits import Mask
+from ltlc.monitoring.columns.alone import take_alone
 from ltlc.monitoring.columns.elements import Elements, elements
-from ltlc.monitoring.columns.following import Followed, follow
+from ltlc.monitoring.columns.following import follow
 from ltlc.monitoring.columns.ids import Runs
 from ltlc.monitoring.columns.known import Known
 from ltlc.monitoring.columns.messages import messages_of
@@ -26,8 +24,9 @@ from ltlc.monitoring.columns.others import Others
 from ltlc.monitoring.columns.prepared import Prepared
 from ltlc.monitoring.columns.series import UnsupportedError
 from ltlc.monitoring.columns.tables import Tables
+from ltlc.monitoring.columns.taken import Part, Taken
 from ltlc.monitoring.columns.tracks import Stretch, count_invalid
-from ltlc.runtime.properties import Failure, Moment
+from ltlc.runtime.properties import Moment
 from ltlc.runtime.session import Plan
 from ltlc.runtime.slice_ids import Slice
 from ltlc.runtime.slice_steps import Slices
@@ -37,38 +36,6 @@ from ltlc.semantics.verdicts import Verdict
 
 OWED = list(Verdict).index(Verdict.PRESUMABLY_VIOLATED)
 WELL = list(Verdict).index(Verdict.SATISFIED)
-
-
-@dataclass(frozen=True)
-class Part:
-    """Those of the runs that were `followed` of which `are_taken` is true; their clocks are then due at `dues`."""
-
-    followed: Followed
-    dues: Sequence[Places]
-    are_taken: Mask
-
-    @cached_property
-    def going(self) -> Places:
-        """Those of them that nothing decides, by place."""
-        return np.flatnonzero(self.are_taken & (self.followed.groups.deciding < 0))
-
-
-@dataclass
-class Taken:
-    """What a block has done: the `parts`, by number the messages that slices take by themselves, and what came of it.
-
-    Something was `owed` in so many slices before it. `steps` has the number of the step that each message is, or, if it
-    is none, of that after it. `opened` has the messages from which on an obligation is open.
-    """
-
-    messages: Elements
-    parts: Sequence[Part]
-    alone: Mapping[int, Places]
-    owed: int
-    steps: Places = field(default_factory=lambda: np.empty(0, np.int64))
-    opened: list[Places] = field(default_factory=list)
-    changes: list[tuple[Place, int]] = field(default_factory=list)
-    violated: list[tuple[Place, int, Slice, Failure]] = field(default_factory=list)
 
 
 def refusal(plan: Plan, slices: Slices, of: Prepared, others: Others) -> str:
@@ -127,22 +94,27 @@ class BySlices:
         known.begin(runs.numbers, self._count + runs.order.take(runs.firsts))
         taken = self._follow(messages, messages.steps, messages.until)
         for part in taken.parts:
-            self._advance(messages, part)
+            self._advance(part)
+            if self._known.dues and taken.is_disturbed:
+                self._see(messages, part.followed.runs, part.taken)
         self._number(taken, runs)
         for part in taken.parts:
             self._date(taken, part)
             self._decide(taken, part)
         for number, those in taken.alone.items():
             self._take_alone(taken, number, those)
-        self._see(messages, runs, np.ones(len(runs.numbers), np.bool_))
+        self._see(messages, runs, None)
         self._conclude(taken)
         self._count += len(messages)
 
-    def _see(self, messages: Elements, runs: Runs, of: Mask) -> None:
-        """The slices of these of the `runs` know their last messages with an id."""
-        lasts = messages.lasts.take(runs.lasts)
-        of = of & (lasts >= 0)
-        numbers, lasts = runs.numbers[of], lasts[of]
+    def _see(self, messages: Elements, runs: Runs, at: Places | None) -> None:
+        """The slices of the `runs` at these places, None for all, know their last messages with an id."""
+        lasts, numbers = messages.lasts.take(runs.lasts), runs.numbers
+        if messages.shared.signals:
+            has_one = np.flatnonzero(lasts >= 0)
+            at = has_one if at is None else np.intersect1d(at, has_one, assume_unique=True)
+        if at is not None:
+            lasts, numbers = lasts.take(at), numbers.take(at)
         self._known.see(numbers, messages.own.latest, lasts)
         if messages.shared.signals:
             self._known.letters[numbers] = messages.shared.held(messages.own.letters).take(lasts)
@@ -176,10 +148,10 @@ class BySlices:
             alone |= dict.fromkeys(silent.tolist(), runs.order[:0])
         return Taken(messages, parts, alone, self._owed)
 
-    def _advance(self, messages: Elements, part: Part) -> None:
+    def _advance(self, part: Part) -> None:
         """Put slices into the states after the messages that they took, and before that which decides them."""
         known, groups, runs = self._known, part.followed.groups, part.followed.runs
-        numbers, states = runs.numbers[part.are_taken], groups.lasts.take(part.going)
+        numbers, states = runs.numbers.take(part.taken), groups.lasts.take(part.going)
         is_owed = self._tables.machine.outputs == OWED
         self._owed -= int(np.count_nonzero(is_owed.take(known.states.take(numbers))))
         self._owed += int(np.count_nonzero(is_owed.take(states)))
@@ -187,22 +159,21 @@ class BySlices:
         if not known.dues:
             return
         for due, after in zip(known.dues, part.dues, strict=True):
-            due[numbers] = after[part.are_taken]
-        known.next[numbers] = np.minimum.reduce([due[numbers] for due in known.dues])
-        self._see(messages, runs, part.are_taken)
+            due[numbers] = after.take(part.taken)
+        known.next[numbers] = np.minimum.reduce([due.take(numbers) for due in known.dues])
 
     def _number(self, taken: Taken, runs: Runs) -> None:
         """Count the messages that are steps, and those that are none."""
         messages, track = taken.messages, self.slices.track
         late = self._late(taken, runs)
         if messages.invalid is None and not messages.early and not len(late):
-            taken.steps = track.steps + np.arange(len(messages) + 1)
+            taken.steps = np.arange(track.steps, track.steps + len(messages) + 1)
         else:
             is_counted = np.ones(len(messages), np.bool_)
             is_counted[: messages.early] = is_counted[late] = False
             if messages.invalid is not None:
                 is_none = np.zeros(len(messages.own), np.bool_)
-                is_none[messages.places[is_counted & messages.invalid]] = True
+                is_none[messages.lasts[is_counted & messages.invalid]] = True
                 count_invalid(track, Stretch(messages.own.steps, np.flatnonzero(~is_none), ()))
                 is_counted &= ~messages.invalid
             taken.steps = track.steps + np.concatenate(([0], is_counted.cumsum()))
@@ -210,6 +181,8 @@ class BySlices:
 
     def _late(self, taken: Taken, runs: Runs) -> Places:
         """The messages of `runs` after those that decide them."""
+        if not taken.is_disturbed:
+            return runs.order[:0]
         lasts, numbers = np.full(len(runs.numbers), len(taken.messages)), np.arange(len(taken.messages))
         for part in taken.parts:
             at, steps, _ = part.followed.decisions
@@ -266,7 +239,7 @@ class BySlices:
         time = int(taken.messages.times[message])
         one = self._slice(taken, number, message, time)
         one.steps = int(taken.steps[message])
-        if taken.messages.is_own(message):
+        if taken.messages.is_own[message]:
             one.hear(time, self.slices.cut.own_ages)
         one.step(time, taken.messages.values(self.slices.cut, message, one))
         assert one.decided_at is not None
