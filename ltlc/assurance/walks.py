@@ -1,7 +1,9 @@
 """Runs in time on which a monitor is judged: letters one after the other, at the times that matter to its clocks.
 
 What changes by itself changes a nanosecond after a bound has passed. So the next letter comes at once, or when a clock
-is about to expire: at the last nanosecond before, at that moment, one after it; or when all clocks have.
+is about to expire: at the last nanosecond before, at that moment, one after it; or when all clocks have. Of several
+durations each is taken from the last letter as well, whatever the clocks say: so two clocks come to expire one just before
+the other, and a clock that should run and does not is noticed.
 """
 
 from __future__ import annotations
@@ -131,8 +133,9 @@ class Walks:
             some = self.chance.sample(range(len(open_places)), min(len(open_places), RIVALS))
             place = open_places.pop(min(some, key=lambda number: gone_on[open_places[number].clocks]))
             gone_on[place.clocks] += 1
+            here = place.situation
             for after in self._onward(place, self.chance.sample(choices, min(len(choices), MOST_CHOICES))):
-                shown = (place.situation, after.situation, *self._elapsed(place, after))
+                shown = (here, after.situation, *self._elapsed(place, after))
                 if shown not in known and not self._goes_without_saying(place, after):
                     known.add(shown)
                     open_places.append(after)
