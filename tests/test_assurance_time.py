@@ -25,6 +25,7 @@ from ltlc.semantics import ltl
 from ltlc.semantics import properties as p
 from ltlc.semantics.properties import Property
 from ltlc.semantics.timed_atoms import Age, Historically, Once, Previously, Since
+from ltlc.semantics.trackers import trackers_of
 
 T = TypeVar("T")
 Kind = Callable[[int], Property]
@@ -149,6 +150,36 @@ def test_the_replay_notices_emitted_code_that_changes_a_verdict(kind: Kind) -> N
     assert wrong
     missed = [mutant for mutant in wrong if isinstance(replay(large, program_of(large, mutant).start, runs), Replayed)]
     assert not missed, missed[0]
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong"),
+    [
+        (
+            "elif state == 3:  # presumably violated\n            if time > self.due_1",
+            "elif state == 3:\n            if time >= self.due_1",
+        ),
+        ("time = self.due + 1", "time = self.due + 2"),
+    ],
+)
+def test_a_fault_that_shows_where_a_clock_expires_a_nanosecond_before_another_is_noticed(
+    right: str, wrong: str
+) -> None:
+    made = compiled(both(100 * MS))
+    text = class_text(made)
+    assert right in text
+    assert isinstance(judged(made, program_of(made, text.replace(right, wrong))), Deviation)
+
+
+def test_an_interval_that_never_begins_is_noticed_though_no_clock_expires_in_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    made = compiled(KINDS["interval"](100 * MS))
+    begun = next(each.subject for each in trackers_of(made.formula) if isinstance(each.subject, Historically))
+    never = replace(begun, operand=ltl.Not(begun.operand))
+    (mutant,) = (each for each in clock_mutants(made.formula) if never in {tracker.subject for tracker in each})
+    monkeypatch.setattr("ltlc.assurance.walks.trackers_of", lambda _: mutant)
+    assert is_noticed(made)
 
 
 HISTORY = {

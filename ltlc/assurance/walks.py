@@ -1,12 +1,15 @@
 """Runs in time on which a monitor is judged: letters one after the other, at the times that matter to its clocks.
 
 What changes by itself changes a nanosecond after a bound has passed. So the next letter comes at once, or when a clock
-is about to expire: at the last nanosecond before, at that moment, one after it; or when all clocks have.
+is about to expire: at the last nanosecond before, at that moment, one after it; or when all clocks have. Of several
+durations each is taken from the last letter as well, whatever the clocks say: so two clocks come to expire one just before
+the other, and a clock that should run and does not is noticed.
 """
 
 from __future__ import annotations
 
 import random
+from collections import Counter
 from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
 from itertools import combinations
 from typing import NamedTuple, Protocol
@@ -35,6 +38,9 @@ from ltlc.specification.expressions import New
 
 MOST_WALKS = 1200
 """Walks of which each shows something new."""
+
+RIVALS = 4
+"""From so many places drawn, the one goes on that is most unlike those that have."""
 
 MOST_CHOICES = 16
 """How many letters are tried in one place."""
@@ -78,11 +84,19 @@ class Place(NamedTuple):
     state: int
 
     @property
+    def clocks(self) -> Hashable:
+        """The state, of each clock whether it expires at the next nanosecond, and which of two does first.
+
+        It makes a difference as well whether the other one follows a nanosecond later.
+        """
+        moments = [moment for _, moment in self.run.dues()]
+        apart = tuple(max(-2, min(2, one - other)) for one, other in combinations(moments, 2))
+        return self.state, tuple(moment == self.walk.until + 1 for moment in moments), apart
+
+    @property
     def situation(self) -> Hashable:
-        """All that matters of a place, of each clock whether it expires at the next nanosecond."""
-        now, last = self.walk.until, self.run.time
-        expiring = tuple(moment == now + 1 for _, moment in self.run.dues())
-        return self.state, self.run.letter, *self.run.states, expiring, last == now
+        """All that matters of a place."""
+        return self.clocks, self.run.letter, *self.run.states, self.run.time == self.walk.until
 
 
 class Walks:
@@ -99,6 +113,8 @@ class Walks:
         timed = timed_atoms(compiled.formula)
         self._longest = max((duration_of(atom) or 0 for atom in timed), default=0)
         self._durations = (0, *durations(compiled.specification.property))
+        # Of a single duration its clock tells as much; clocks of several may expire one just before the other.
+        self._several = self._durations if len(self._durations) > 2 else ()
         self._ages = [atom.most for atom in timed if isinstance(atom, Age)]
 
     def run(self, session: Nanoseconds, retake: Retake = as_held) -> TimedRun:
@@ -112,10 +128,14 @@ class Walks:
         """
         choices = [letter | news for letter in letters for news in self._all_news()]
         open_places, known = list(self._starts()), set[Hashable]()
+        gone_on = Counter[Hashable]()
         while open_places and len(known) < MOST_WALKS:
-            place = open_places.pop(self.chance.randrange(len(open_places)))
+            some = self.chance.sample(range(len(open_places)), min(len(open_places), RIVALS))
+            place = open_places.pop(min(some, key=lambda number: gone_on[open_places[number].clocks]))
+            gone_on[place.clocks] += 1
+            here = place.situation
             for after in self._onward(place, self.chance.sample(choices, min(len(choices), MOST_CHOICES))):
-                shown = (place.situation, after.situation, *self._elapsed(place, after))
+                shown = (here, after.situation, *self._elapsed(place, after))
                 if shown not in known and not self._goes_without_saying(place, after):
                     known.add(shown)
                     open_places.append(after)
@@ -134,7 +154,8 @@ class Walks:
         session = [place.walk.session] if self._ages else []
         for time in (*session, *(step.time for step in place.walk.steps[-3:])):
             elapsed = after.walk.until - time
-            yield sum(elapsed > each for each in self._durations), elapsed in self._durations
+            passed = sum(elapsed > each for each in self._durations)
+            yield passed, elapsed in self._durations, elapsed + 1 in self._several
 
     def _all_news(self) -> Iterator[Letter]:
         arrivals = self.arrivals.values()
@@ -175,10 +196,12 @@ class Walks:
         return state
 
     def _waits(self, place: Place) -> list[Nanoseconds]:
+        """Up to when the last letter may be held: around what the clocks say, and what the property says of it."""
         if not place.walk.steps:
             return []
         now = place.walk.until
-        near = (moment + side for _, moment in place.run.dues() for side in (-1, 0, 1))
+        near = {moment + side for _, moment in place.run.dues() for side in (-1, 0, 1)}
+        near |= {place.walk.steps[-1].time + each + side for each in self._several for side in (-1, 0, 1)}
         return sorted({moment for moment in near if moment > now} | {now + 1, now + self._longest + 2})
 
     def walk(self, told: Observation, further: Sequence[Reading], taking: Taking | None = None) -> Walk:
@@ -273,4 +296,5 @@ def timed_in(property_: Property) -> list[Atom]:
 def durations(property_: Property) -> tuple[Nanoseconds, ...]:
     """The durations that `property_` is written with, each once, in ascending order."""
     past = (duration_of(atom) for atom in timed_in(property_) if isinstance(atom, PastAtom))
-    return tuple(sorted({part.duration for part in bounds(property_)} | {each for each in past if each}))
+    within = (each for part in bounds(property_) for each in (part.start, part.duration))
+    return tuple(sorted({each for each in (*within, *past) if each}))
