@@ -90,7 +90,7 @@ def windows(chance: random.Random, sent: Sequence[Sent]) -> Iterator[tuple[int, 
         yield tuple(sorted(chance.choice(times) + chance.choice((-1, 0, 1)) for _ in range(2)))  # type: ignore[misc]
 
 
-@pytest.mark.parametrize("form", FORMS.keys() - {"ros1"})
+@pytest.mark.parametrize("form", sorted(FORMS.keys() - {"ros1"}))
 def test_an_extract_has_the_messages_of_its_time_bit_for_bit_in_their_order(tmp_path: Path, form: str) -> None:
     chance = random.Random(form)
     sent = many(chance, 300)
