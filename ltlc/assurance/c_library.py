@@ -134,7 +134,10 @@ def _of_table(prefix: str, table: Table) -> Iterator[str]:
 
 
 def _of_instances(prefix: str, table: OpenTable) -> Iterator[str]:
-    """Steps of all instances; the verdict of all, how many are violated, and how many owe something."""
+    """Steps of all instances; the verdict of all, how many are violated, and how many owe something.
+
+    By number, how many found no place, were no step, and since when the property is violated.
+    """
     yield f"bool gate_step({prefix}_instances *t, int64_t time, const {prefix}_samples *s);"
     yield f"bool gate_step({prefix}_instances *t, int64_t time, const {prefix}_samples *s)"
     yield f"{{ return {prefix}_instances_step(t, time, s); }}"
@@ -144,4 +147,4 @@ def _of_instances(prefix: str, table: OpenTable) -> Iterator[str]:
     yield "for (uint32_t i = 0; i < t->count; i++) {"
     yield f"if (t->open[i].monitors.{table.writer.name}.verdict == {prefix.upper()}_PRESUMABLY_VIOLATED)"
     yield "{ shown[2] += 1 + t->open[i].more; } }"
-    yield "shown[3] = property == 0 ? t->left_out : t->no_step; }"
+    yield "shown[3] = property == 0 ? t->left_out : property == 1 ? t->no_step : t->first.since; }"

@@ -36,13 +36,6 @@ def require_no_bytes(compiled: Sequence[Compiled]) -> None:
             raise NotInTargetError("bytes that are read as an id")
 
 
-def require_no_first_values(compiled: Sequence[Compiled]) -> None:
-    """Raise NotInTargetError if a signal has a value before its first sample."""
-    for each in compiled:
-        if first := next((signal for signal in each.specification.signals() if signal.otherwise is not None), None):
-            raise NotInTargetError(f"`{first.name}`, a value before there is a sample")
-
-
 def origin(signal: Signal) -> str:
     """Where a reading comes from, as a declaration would say it."""
     assert isinstance(signal.definition, Field)

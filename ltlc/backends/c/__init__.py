@@ -18,17 +18,20 @@ from ltlc.backends.c.names import member_names, property_names
 from ltlc.backends.c.paces import Pace, signals_of
 from ltlc.backends.c.samples import Samples
 from ltlc.backends.c.types import plural, pointer
-from ltlc.backends.inputs import require_no_bytes, require_no_first_values
+from ltlc.backends.inputs import require_no_bytes
 from ltlc.backends.names import variable
+from ltlc.backends.spelling import NotInTargetError
 from ltlc.backends.statements import If
 from ltlc.backends.templates import template
 from ltlc.backends.trees import INDENT, Text
 from ltlc.backends.wording import MEANINGS
 from ltlc.compiler import Compiled
+from ltlc.program.lowering import undefined_parts
 from ltlc.runtime.times import NEVER, SECOND
 from ltlc.semantics.verdicts import Verdict
-from ltlc.specification.expressions import Signal
+from ltlc.specification.expressions import New, Signal, inputs
 from ltlc.specification.specification import Specification
+from ltlc.specification.text import text
 
 __all__ = ["Bound", "Files", "emit", "prefix_of"]
 
@@ -121,10 +124,19 @@ def emit(
     """
     require_no_bytes(compiled)
     require_a_table(compiled, specification)
-    require_no_first_values(compiled)
+    _require_known_at_first(compiled)
     stem = stem or PurePath(specification.source.name).stem
     prefix = prefix_of(stem)
     return _File(compiled, specification, stem, prefix, is_grouped).files()
+
+
+def _require_known_at_first(compiled: Sequence[Compiled]) -> None:
+    """Raise NotInTargetError if something that may be NaN is computed of nothing but values before the first sample."""
+    for each in compiled:
+        for part in (part for atom in each.specification.atoms for part in undefined_parts(atom.condition)):
+            read = [i.signal for i in inputs(part) if not isinstance(i, New)]
+            if read and all(signal.otherwise is not None for signal in read):
+                raise NotInTargetError(f"`{read[0].name}` alone in `{text(part)}`, which may have no value")
 
 
 class _File:

@@ -322,6 +322,8 @@ class PropertyWriter:
         """Where one of these holds, messages have come without the value that they should bring."""
         by_read = {read(i): i for i in self.inputs}
         for wanted, news, _ in self.machine.excused:
+            if not news:  # it has a value before the first one
+                continue
             came = [Text(self.given[by_read[each]].text) for each in news]
             yield conjunction([_not_all(self.signals.ready([by_read[wanted]])), *came])
 

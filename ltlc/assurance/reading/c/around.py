@@ -275,15 +275,18 @@ class Around:
             for due in each.dues
         )
         end = [] if self.timeout is None else [f"monitors->end = {self.never};"]
-        texts = (f'{place} = "";' for pace in self.paces for place in self.texts_at_first(pace))
-        return [f"*monitors = ({self.prefix}_monitors){{0}};", "monitors->time = INT64_MIN;", *end, *never, *texts]
+        values = (text for pace in self.paces for text in self.values_at_first(pace))
+        return [f"*monitors = ({self.prefix}_monitors){{0}};", "monitors->time = INT64_MIN;", *end, *never, *values]
 
-    def texts_at_first(self, pace: Pace) -> Iterator[str]:
-        """The strings that may be read before they have come."""
+    def values_at_first(self, pace: Pace) -> Iterator[str]:
+        """What has a value before its first sample has that, and strings that may be read then are empty."""
         names = {e.input.signal for s in pace.properties for e in s.of.machine.excused}
-        for signal, kept in pace.kept.items():
-            if signal.name in names and kept.type == TEXT:
-                yield f"monitors->{pace.name}.{kept.name}{'[0]' if kept.depth > 1 else ''}"
+        for number, (signal, kept) in enumerate(pace.kept.items()):
+            place = f"monitors->{pace.name}.{kept.name}{'[0]' if kept.depth > 1 else ''}"
+            if signal.otherwise is not None:
+                yield f"{place} = _first{pace.suffix}_{number};"
+            elif signal.name in names and kept.type == TEXT:
+                yield f'{place} = "";'
 
     def begin_session(self) -> list[str]:
         """Ticks that begin with the session do, and ages count from there."""

@@ -109,9 +109,11 @@ class Struct:
 
     @property
     def excused(self) -> Iterator[tuple[Input, list[Input]]]:
-        """The others, but for news, each with the news without which it may have no value."""
+        """The others, but for news, each with the news without which it may have no value; some always have one."""
         by_read = {read(each): each for each in self.inputs}
         for wanted, news, _ in self.of.machine.excused:
+            if not news:
+                continue
             yield by_read[wanted], [by_read[each] for each in news]
 
     @property
@@ -298,8 +300,8 @@ class Pace:
         return [*found, *(self.values[value].ago() for value in struct.values)]
 
     def ready(self, given: Given, wanted: Iterable[Input]) -> list[str]:
-        """All of these hold if every input has a value."""
-        wanted = [i for i in wanted if not isinstance(i, New) and i.signal in self.kept]
+        """All of these hold if every input has a value, as those have that have one before their first sample."""
+        wanted = [i for i in wanted if not isinstance(i, New) and self._is_awaited(i.signal)]
         flags = [f"signals->{group.flag}" for group in given.groups_of(wanted)]
         return [*flags, *dict.fromkeys(each for i in wanted for each in self._long_enough(i))]
 
@@ -309,8 +311,11 @@ class Pace:
             yield f"signals->{kept.name}_count >= {reach(wanted)}u"
         else:
             for part in wanted.signal.inputs:
-                if part.signal in self.kept:
+                if self._is_awaited(part.signal):
                     yield from self._long_enough(part)
+
+    def _is_awaited(self, signal: Signal) -> bool:
+        return signal in self.kept and signal.otherwise is None
 
     def declared(self, prefix: str, is_rated: bool) -> list[str]:
         """The members that there have to be."""
@@ -425,7 +430,7 @@ def _is_constant(signal: Signal) -> bool:
 def _kept(signal: Signal, needed: Sequence[Input], names: list[str]) -> Kept:
     of_signal = [i for i in needed if i.signal == signal]
     depth = max([1 if signal.when is None else 2, *map(reach, of_signal)])
-    is_computed = not isinstance(signal.definition, Field) and signal.when is None
+    is_computed = not isinstance(signal.definition, Field) and not signal.is_taken
     type_ = DOUBLE if is_computed and signal.type is e.ValueType.NUMBER else type_of(signal)
     has_times, has_arrays = (any(isinstance(i, each) for i in of_signal) for each in (Slope, Recent))
     return _taken(Kept(signal.name, signal, type_, depth, has_times, has_arrays), names)
