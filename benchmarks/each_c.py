@@ -3,9 +3,9 @@
     python -m benchmarks.each_c [--messages N] [--rounds N]
 
 Each message is of one of as many ids as the limit allows, at random; a third of them owes something. Of `each new`,
-every second message opens an instance, and the others answer the oldest one: as many are open as the limit allows. Beside them
-are properties of whole runs. Compiled with -O2; a figure is the least of the rounds, which go around all programs in turn.
-It includes the loop that makes the calls.
+every second message opens an instance, and the others answer the oldest one: as many are open as the limit allows.
+Beside them are properties of whole runs. Compiled with -O2; a figure is the least of the rounds, which go around all
+programs in turn. It includes the loop that makes the calls.
 """
 
 from __future__ import annotations
