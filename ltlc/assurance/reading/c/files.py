@@ -139,14 +139,15 @@ class _File:
         for number, kept in enumerate(pace.kept.values()):
             if kept.of.otherwise is None:
                 continue
+            found: object = None
             right = kept.of.otherwise.value
             match Scope(self.definitions, {}, {}).tree(values[f"_first{pace.suffix}_{number}"]):
-                case Constant(found):
-                    pass
-                case Apply("-", (Constant(float() as negated),)):
-                    found = -negated
+                case Constant(value):
+                    found = value
+                case Apply("-", (Constant(float() as value),)):
+                    found = -value
                 case _:
-                    found = None
+                    pass
             if kept.type.is_number:
                 right = int(right) if kept.type.scalar.is_integer else float(right)
             if repr(found) != repr(right):  # which tells true from 1, and -0.0 from 0.0
