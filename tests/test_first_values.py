@@ -11,7 +11,7 @@ from replaying import MESSAGES, judged, outcomes
 from stepping import from_text, ns, session
 
 from ltlc.analysis.atom_words import atom_text
-from ltlc.assurance.programs import c_programs, rust_programs
+from ltlc.assurance.c_programs import c_programs, rust_programs
 from ltlc.assurance.reading.c.files import written as written_in_c
 from ltlc.assurance.reading.outcomes import Difference, ReadBack
 from ltlc.assurance.reading.rust import written as written_in_rust
