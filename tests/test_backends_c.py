@@ -506,6 +506,23 @@ def _together() -> list[str]:
     ]
 
 
+def test_comparisons_that_the_type_of_a_field_decides_give_no_warning() -> None:
+    declared = "decl part /part UInt8.data\ndecl small /small Int8.data\n"
+    compared = ("part < 0", "part <= 255", "255 < part", "0 <= part", "small <= 127", "small < -128")
+    stated = (f"never @{{{text}, -1}} and part == 3\n" for text in compared)
+    compiled, specification = from_text(f"{declared}{''.join(stated)}never any(@{{part, -2:}} < 0) and small > 1\n")
+    files = emit(compiled, specification)
+    path = compiler()
+    assert path is not None
+    monitors = Library(files, path).monitors()  # raises CompilerError where the compiler warns
+    signals = {signal.name: signal for signal in files.samples.group_of}
+    for time in range(2):
+        monitors.step(time, {signals["part"]: 3.0, signals["small"]: 3.0}, ["/part", "/small"])
+    shown = [VERDICTS[monitors.show(number)[0]].value for number in range(len(compiled))]
+    holds = (False, True, False, True, True, False, False)
+    assert [verdict == "violated" for verdict in shown] == list(holds)
+
+
 def test_the_example_compiles_and_says_what_it_sees(tmp_path: Path) -> None:
     if shutil.which("g++") is None:
         pytest.skip("there is no g++ here")

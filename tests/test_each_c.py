@@ -190,7 +190,6 @@ EACH = "each g of id limit 3: never kind == 1"
 REFUSED = {
     "no limit": ("each g of id: never kind == 1", "write `limit N`"),
     "too many": ("each g of id limit 99999999: never kind == 1", "`limit 99999999`"),
-    "each new": ("each new kind limit 3: never kind == 1", "`each new`"),
     "strings": ('decl name /n String.data\neach g of name limit 3: never name == "a"', "`name`, whose ids"),
     "an id as a value": ("each g of id limit 3: never g == kind", "`g`, an id that is read as a value"),
     "ticks": (f"_rate_ = 10\n{EACH}", "`_rate_`"),
@@ -212,16 +211,23 @@ def test_what_a_table_cannot_judge_is_refused_by_name(text: str, said: str) -> N
     assert any(said in f"{each.message}; {each.help}" for each in refused.value.diagnostics)
 
 
-def test_the_program_of_the_documentation_prints_what_it_says(tmp_path: Path) -> None:
+PROGRAMS = {
+    "motors": "motor 3 since 3000 ms",
+    "answers": "1 answered, 1 not, first that of 0 ms",
+}
+
+
+@pytest.mark.parametrize(("name", "prints"), PROGRAMS.items(), ids=PROGRAMS)
+def test_the_programs_of_the_documentation_print_what_it_says(name: str, prints: str, tmp_path: Path) -> None:
     page = (Path(__file__).parent.parent / "docs" / "c.md").read_text()
     blocks = [textwrap.dedent(each) for each in re.findall(r"(?:^    .*\n|^\n)+", page, re.MULTILINE)]
-    text = next(each for each in blocks if "# motors.txt" in each)
-    (tmp_path / "main.c").write_text(next(each for each in blocks if "motors.h" in each))
-    files = emit(*from_text(text), "motors")
-    (tmp_path / "motors.c").write_text(files.source)
-    (tmp_path / "motors.h").write_text(files.header)
+    text = next(each for each in blocks if f"# {name}.txt" in each)
+    (tmp_path / "main.c").write_text(next(each for each in blocks if f"{name}.h" in each))
+    files = emit(*from_text(text), name)
+    (tmp_path / f"{name}.c").write_text(files.source)
+    (tmp_path / f"{name}.h").write_text(files.header)
     flags = ["-std=c99", "-Wall", "-Wextra", "-pedantic", "-Werror", "-ffp-contract=off"]
-    subprocess.run([compiler() or "cc", *flags, "main.c", "motors.c", "-o", "motors"], cwd=tmp_path, check=True)
-    done = subprocess.run(["./motors"], cwd=tmp_path, capture_output=True, text=True, check=False)
-    assert (done.stdout, done.returncode) == ("motor 3 since 3000 ms\n", 1)
-    assert "`motor 3 since 3000 ms`" in page
+    subprocess.run([compiler() or "cc", *flags, "main.c", f"{name}.c", "-o", name], cwd=tmp_path, check=True)
+    done = subprocess.run([f"./{name}"], cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert (done.stdout, done.returncode) == (f"{prints}\n", 1)
+    assert f"`{prints}`" in page

@@ -7,11 +7,16 @@ from random import Random
 
 import pytest
 from language_support import codes_of, only_property
-from replaying import outcomes
+from replaying import MESSAGES, judged, outcomes
 from stepping import from_text, ns, session
 
 from ltlc.analysis.atom_words import atom_text
+from ltlc.assurance.c_programs import c_programs, rust_programs
+from ltlc.assurance.reading.c.files import written as written_in_c
+from ltlc.assurance.reading.outcomes import Difference, ReadBack
+from ltlc.assurance.reading.rust import written as written_in_rust
 from ltlc.assurance.replay import Replayed
+from ltlc.assurance.rust_library import compiler as rust_compiler
 from ltlc.backends import c, rust
 from ltlc.backends.spelling import NotInTargetError
 
@@ -89,9 +94,77 @@ def test_the_replay_finds_another_value_at_first() -> None:
     assert not isinstance(outcome, Replayed)
 
 
-@pytest.mark.parametrize(("emit", "target"), [(c.emit, "C"), (rust.emit, "Rust")])
-def test_what_keeps_no_such_value_refuses_it_by_name(emit: object, target: str) -> None:
-    compiled, specification = from_text(f"{DECLARED}never @{{x, -1 else 0}} > 1")
+EMITTED = f"""{DECLARED}
+decl i /i Int32.data
+decl u /u UInt64.data
+decl f /f Float32.data
+never @{{i, -1 else 3}} > 5
+never @{{i, 0 else -2147483648}} > i
+never @{{u, -2 else 18446744073709551615}} == 4 and u > 3
+never @{{f, 0 else 0.1}} > f
+always (new i implies @{{on, -1 else true}})
+always (new i implies @{{m, -1 else "a\\"é"}} != "on")
+never @{{f > 2, -2 else false}} and f < 1
+never f - @{{f, -1 else -0.5}} > 1
+never @{{n, -1 else -3}} > 5
+always (x > 1 implies eventually @{{x, -1 else 0}} < 1 within 2 s)
+never sqrt(x) - @{{x, -1 else 2}} > 1
+"""
+
+
+@pytest.mark.parametrize("settings", ["", "_rate_ = 10\n"])
+def test_c_begins_with_the_other_value(settings: str) -> None:
+    compiled, specification = from_text(f"{settings}{EMITTED}")
+    files = c.emit(compiled, specification)
+    found = written_in_c(files.header, files.source, compiled, specification.rate)
+    assert [None if isinstance(each, Difference) else type(each.read_back()) for each in found] == [ReadBack] * len(
+        found
+    )
+    programs = c_programs(files, compiled, specification, MESSAGES)
+    assert programs is not None
+    assert all(isinstance(judged(*pair), Replayed) for pair in zip(compiled, programs, strict=True))
+
+
+@pytest.mark.skipif(rust_compiler() is None, reason="there is no rustc here")
+def test_rust_begins_with_the_other_value() -> None:
+    compiled, specification = from_text(EMITTED.replace("never sqrt(x) - @{x, -1 else 2} > 1\n", ""))
+    file = rust.file_of(compiled, specification)
+    found = written_in_rust(file.text, file.c.header, file.c.source, compiled)
+    assert [None if isinstance(each, Difference) else type(each.read_back()) for each in found] == [ReadBack] * len(
+        found
+    )
+    programs = rust_programs(file, compiled, specification)
+    assert programs is not None
+    assert all(isinstance(judged(*pair), Replayed) for pair in zip(compiled, programs, strict=True))
+
+
+CHANGES = {
+    "a number": ("i_1_else_3 = 3;", "i_1_else_3 = 4;"),
+    "a large one": ("UINT64_C(18446744073709551615)", "UINT64_C(18446744073709551614)"),
+    "a sign": ("= -0.5f;", "= 0.5f;"),
+    "a boolean": ("on_1_else_true = true;", "on_1_else_true = false;"),
+    "a boolean as a number": ("on_1_else_true = true;", "on_1_else_true = 1;"),
+    "a string": ('"a\\"', '"b\\"'),
+    "none": ("    monitors->signals.n_1_else_3 = INT64_C(-3);\n", ""),
+    "a value that waits": (
+        "if (samples->has_f && signals->has_f) {\n        signals->value",
+        "if (samples->has_f && signals->has_f && signals->f_count >= 2u) {\n        signals->value",
+    ),
+}
+
+
+@pytest.mark.parametrize(("right", "wrong"), CHANGES.values(), ids=CHANGES)
+def test_another_value_at_first_is_not_read_back(right: str, wrong: str) -> None:
+    compiled, specification = from_text(EMITTED)
+    files = c.emit(compiled, specification)
+    assert right in files.source
+    found = written_in_c(files.header, files.source.replace(right, wrong), compiled)
+    assert any(isinstance(each, Difference) or isinstance(each.read_back(), Difference) for each in found)
+
+
+@pytest.mark.parametrize("emit", [c.emit, rust.emit])
+def test_what_may_have_no_value_and_reads_such_values_alone_is_refused_by_name(emit: object) -> None:
+    compiled, specification = from_text(f"{DECLARED}never 1 / @{{x, -1 else 0}} > 1")
     with pytest.raises(NotInTargetError, match=r"@\{x, -1 else 0\}"):
         emit(compiled, specification)  # type: ignore[operator]
 

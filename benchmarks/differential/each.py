@@ -1,4 +1,4 @@
-"""Properties of each id and of each message: drawn, judged by rows, by columns and by definition.
+"""Properties of each id and of each message: drawn, judged by rows, by columns, in files, in C and by definition.
 
 By `docs/language.md`, 'One property for each id': of a slice, rows are left out, and what is left is a run.
 `each new s: P` is `always (new s implies P)`.
@@ -9,12 +9,14 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from pathlib import Path
 from random import Random
+from tempfile import TemporaryDirectory
 from typing import Any
 
-from benchmarks.differential import targets
+from benchmarks.differential import each_in_c, files, targets
 from benchmarks.differential.campaign import Difference, Outcome, live
-from benchmarks.differential.compare import PERMANENT, compared, refuted
+from benchmarks.differential.compare import PERMANENT, Continued, compared, refuted
 from benchmarks.differential.draw import DECLARATIONS, Draw
 from benchmarks.differential.forms import is_state
 from benchmarks.differential.names import said
@@ -27,6 +29,8 @@ from ltlc.frontend.language import load_text
 from ltlc.frontend.syntax import tree as s
 from ltlc.inputs.recordings.blocks import blocks_of
 from ltlc.inputs.recordings.rows import Row as Cells
+from ltlc.interfaces.api.monitor import LiveRun
+from ltlc.interfaces.api.prepare import Prepared
 from ltlc.monitoring.columns.session import ByBlocks
 from ltlc.runtime.rows import ByRows
 from ltlc.runtime.session import Session
@@ -148,17 +152,16 @@ def outcome(seed: int, recordings: int = 6) -> Outcome:
     draw = DrawEach(chance)
     text = draw.specification()
     try:
-        of = targets.monitors(text)
+        case = Case(text)
     except targets.UnusableError:
         found.runs["not translated"] += 1
         return found
-    each = Each(text)
     topics = sorted(
         {f"/{name}" for name in ("v", "w", "small", "flag", "mode", "bump", "i") if name in text.splitlines()[-1]}
     )
     for _ in range(recordings):
         recording = draw.recording([*topics, SLICED], chance.random() < 0.6)
-        judge_one(found, of, each, recording, chance)
+        judge_one(found, case, recording, chance)
     return found
 
 
@@ -166,34 +169,59 @@ def again(of: Difference) -> Difference | None:
     """The first difference that is found when a case is judged anew; None if all is the same."""
     found = Outcome()
     try:
-        judge_one(found, targets.monitors(of.text), Each(of.text), of.recording, Random(0))
+        judge_one(found, Case(of.text), of.recording, Random(0))
     except (targets.UnusableError, AssertionError, KeyError, StopIteration):
         return None
     return next(iter(found.differences), None)
 
 
-def judge_one(found: Outcome, of: Monitors, each: Each, recording: Recording, chance: Random) -> None:
+class Case:
+    """A specification of one property: by definition, and what is made of it. Raises UnusableError."""
+
+    def __init__(self, text: str) -> None:
+        self.each = Each(text)
+        self.of = targets.monitors(text)
+        self.in_c = each_in_c.load(text)
+        self.is_sliced = isinstance(self.each.body, s.EachOf)
+
+
+def judge_one(found: Outcome, case: Case, recording: Recording, chance: Random) -> None:
     """A recording, in every way."""
-    is_sliced = isinstance(each.body, s.EachOf)
-    parts: Mapping[Any, Property] = each.slices(recording) if is_sliced else {None: each.whole()}
-    if not is_sliced:  # While there is news, ltlc may know of an instance already what becomes of it.
+    each = case.each
+    parts: Mapping[Any, Property] = each.slices(recording) if case.is_sliced else {None: each.whole()}
+    if not case.is_sliced:  # While there is news, ltlc may know of an instance already what becomes of it.
         recording = Recording(recording.rows, recording.begin, recording.end + 1)
     wanted = {id_: (judged_alone(part, recording), refuted(part, recording)) for id_, part in parts.items()}
     judged = {id_: expected for id_, (expected, _) in wanted.items()}
-    for way, session in _sessions(of, recording, chance):
-        results = _of_slices(session, judged, recording.end) if is_sliced else {None: _of_messages(session)}
-        found.runs[way] += 1
-        found.steps[way] += sum(map(live, judged.values()))
-        problems, is_early = [], False
-        for id_, (expected, is_refuted) in wanted.items():
-            one = compared(expected if is_sliced else _never_satisfied(expected), results[id_], is_refuted)
-            found.early += one.early
-            found.late += one.late
-            is_early |= one.early or one.late
-            problems += [f"id {id_}: {one.problem}"] if one.problem else []
-        if is_sliced and not is_early and not problems:
+    for way, session in _sessions(case.of, recording, chance):
+        results = _of_slices(session, judged, recording.end) if case.is_sliced else {None: _of_messages(session)}
+        problems, is_near = _compared(found, way, wanted, results, case.is_sliced)
+        if case.is_sliced and not is_near and not problems:
             problems += _of_whole(session, judged)
-        found.differences += [Difference(way, "p", problem, of.text, recording) for problem in problems]
+        found.differences += [Difference(way, "p", problem, each.text, recording) for problem in problems]
+    if case.in_c is not None and (in_c := each_in_c.found_by(case.in_c, case.of, recording, judged)) is not None:
+        problems, _ = _compared(found, "C", wanted, in_c, case.is_sliced)
+        found.differences += [Difference("C", "p", problem, each.text, recording) for problem in problems]
+
+
+def _compared(
+    found: Outcome,
+    way: str,
+    wanted: Mapping[Any, tuple[Judged, Continued]],
+    results: Mapping[Any, Found],
+    is_sliced: bool,
+) -> tuple[list[str], bool]:
+    """What differs in each id, or of all messages, and whether a verdict came at another time than by definition."""
+    found.runs[way] += 1
+    problems, is_near = [], False
+    for id_, (expected, is_refuted) in wanted.items():
+        found.steps[way] += live(expected)
+        one = compared(expected if is_sliced else _never_satisfied(expected), results[id_], is_refuted)
+        found.early += one.early
+        found.late += one.late
+        is_near |= one.early or one.late
+        problems += [f"id {id_}: {one.problem}"] if one.problem else []
+    return problems, is_near
 
 
 def _never_satisfied(of: Judged) -> Judged:
@@ -261,3 +289,19 @@ def _sessions(of: Monitors, recording: Recording, chance: Random) -> Iterator[tu
     session = by_blocks.session
     ByRows(session).advance(recording.end)
     yield way, session
+    yield "ltlc.monitor", _monitored(of, recording)
+    form = chance.choice([*files.TABLES, *files.bag_forms(recording.rows)])
+    with TemporaryDirectory() as folder:
+        path = files.write(form, Path(folder), of, recording)
+        yield form, targets.session_of_file(of, path, None, recording.end)
+
+
+def _monitored(of: Monitors, recording: Recording) -> Session:
+    """The session of `ltlc.monitor`, a dictionary at a time."""
+    run = LiveRun(Prepared(of.specification, of.compiled, (), targets.BUDGET), of.signals)
+    for row in recording.rows:
+        run.step(of.cells(row), time_ns=row.time)
+    run.step({}, time_ns=recording.end)
+    session = run.finish()._report.session
+    assert session is not None
+    return session

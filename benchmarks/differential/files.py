@@ -37,6 +37,7 @@ TYPES = {
     "/uints": "std_msgs/msg/UInt64MultiArray",
     "/marks": "visualization_msgs/msg/MarkerArray",
     "/bump": "std_msgs/msg/Empty",
+    "/part": "sensor_msgs/msg/JoyFeedback",
     "/pair": "geometry_msgs/msg/Vector3",
     "/robot": "nav_msgs/msg/Odometry",
     "/cart": "nav_msgs/msg/Odometry",
@@ -59,6 +60,8 @@ def _message(topic: str, values: Mapping[str, Any]) -> Any:
         return found
     if topic == "/bump":
         return made(type_)
+    if topic == "/part":
+        return made(type_, id=values["key"], type=values["part"], intensity=values["level"])
     if topic == "/pair":
         return made(type_, x=values["pair_x"], y=values["pair_y"])
     [value] = values.values()
@@ -153,6 +156,7 @@ def _arrow(field: Field, cells: Sequence[Mapping[str, Any]], name: str) -> pa.Da
     }
     marks = {"ids": pa.list_(pa.int32()), "kinds": pa.list_(pa.string()), "locked": pa.list_(pa.bool_())}
     marks |= dict.fromkeys(("marks", "bump"), pa.bool_())
+    marks |= {"key": pa.uint8(), "part": pa.uint8(), "level": pa.float32()}
     return marks.get(name) or simple.get(topic, pa.float64())
 
 

@@ -319,12 +319,17 @@ def by_compiled(of: Monitors, recording: Recording, target: str) -> By:
 
 def by_file(of: Monitors, path: Path, since: int | None, until: int | None) -> By:
     """`ltlc run` on a file."""
+    return {track.property.label: of_track(track) for track in session_of_file(of, path, since, until).tracks}
+
+
+def session_of_file(of: Monitors, path: Path, since: int | None, until: int | None) -> Session:
+    """The session of `ltlc run` on a file. Raises UnusableError."""
     judge = replace(of.judge, reading=ReadOptions(since=since, until=until))
     vars(judge).update({name: getattr(of.judge, name) for name in ("signals", "_plans", "prepared")})
     report = judge.judge(path)
     if report.session is None or report.is_damaged:
         raise UnusableError("; ".join(f"{each.code} {each.message}" for each in report.diagnostics))
-    return {track.property.label: of_track(track) for track in report.session.tracks}
+    return report.session
 
 
 IN_MEMORY: Mapping[str, Callable[[Monitors, Recording, Random], By]] = {

@@ -10,6 +10,7 @@ from typing import Any
 from ltlc.assurance.library import LIBRARY, Loaded, load
 from ltlc.backends.c import Files
 from ltlc.backends.c.ids import Table
+from ltlc.backends.c.instances import OpenTable
 from ltlc.backends.c.types import pointer
 from ltlc.base.files import scratch
 from ltlc.program.types import type_of
@@ -56,7 +57,7 @@ def _load(files: Files, folder: Path, path: str) -> Any:
 def _glue(files: Files) -> Iterator[str]:
     """Functions with the same names and types whatever was emitted."""
     prefix, header = files.prefix, files.header
-    stem = prefix if files.table is None else f"{prefix}_ids"
+    stem = prefix if files.table is None else f"{prefix}_{files.table.stem}"
     judge = f"{prefix}_monitors" if files.table is None else stem
     yield f'#include "{files.stem}.h"'
     yield "size_t gate_size(int which);"
@@ -91,7 +92,13 @@ def _glue(files: Files) -> Iterator[str]:
         if heard.has_flag:
             yield f"case {number}: s->{heard.name} = true; break;"
     yield "default: (void)s; break; } }"
-    yield from _of_monitors(prefix) if files.table is None else _of_table(prefix, files.table)
+    match files.table:
+        case None:
+            yield from _of_monitors(prefix)
+        case Table() as table:
+            yield from _of_table(prefix, table)
+        case OpenTable() as table:
+            yield from _of_instances(prefix, table)
 
 
 def _of_monitors(prefix: str) -> Iterator[str]:
@@ -124,3 +131,20 @@ def _of_table(prefix: str, table: Table) -> Iterator[str]:
     yield f"const {prefix}_property p = ({prefix}_property)0;"
     yield f"shown[0] = (int64_t){prefix}_verdict_of(&one->monitors, p);"
     yield f"shown[1] = {prefix}_since_of(&one->monitors, p); return true; }}"
+
+
+def _of_instances(prefix: str, table: OpenTable) -> Iterator[str]:
+    """Steps of all instances; the verdict of all, how many are violated, and how many owe something.
+
+    By number, how many found no place, were no step, and since when the property is violated.
+    """
+    yield f"bool gate_step({prefix}_instances *t, int64_t time, const {prefix}_samples *s);"
+    yield f"bool gate_step({prefix}_instances *t, int64_t time, const {prefix}_samples *s)"
+    yield f"{{ return {prefix}_instances_step(t, time, s); }}"
+    yield f"void gate_show(const {prefix}_instances *t, int property, int64_t *shown);"
+    yield f"void gate_show(const {prefix}_instances *t, int property, int64_t *shown)"
+    yield f"{{ shown[0] = (int64_t){prefix}_instances_verdict(t); shown[1] = t->violated; shown[2] = 0;"
+    yield "for (uint32_t i = 0; i < t->count; i++) {"
+    yield f"if (t->open[i].monitors.{table.writer.name}.verdict == {prefix.upper()}_PRESUMABLY_VIOLATED)"
+    yield "{ shown[2] += 1 + t->open[i].more; } }"
+    yield "shown[3] = property == 0 ? t->left_out : property == 1 ? t->no_step : t->first.since; }"

@@ -8,7 +8,7 @@ from typing import TypeVar
 
 from ltlc.assurance.c_library import Library, compiler
 from ltlc.assurance.c_program import CProgram
-from ltlc.assurance.c_table import TableLibrary, TableProgram
+from ltlc.assurance.c_table import InstancesProgram, TableLibrary, TableProgram
 from ltlc.assurance.compiled_program import Libraries
 from ltlc.assurance.library import Loaded
 from ltlc.assurance.messages import Messages
@@ -18,6 +18,7 @@ from ltlc.assurance.rust_library import compiler as rust_compiler
 from ltlc.assurance.traffic import Settings
 from ltlc.backends import rust
 from ltlc.backends.c import Files, emit
+from ltlc.backends.c.ids import Table
 from ltlc.compiler import Compiled
 from ltlc.specification.specification import Specification
 
@@ -39,9 +40,10 @@ def c_programs(
     def of_table(libraries: Libraries, number: int, text: Files) -> Program:
         return TableProgram(libraries, number, text, messages)
 
-    if files.table is not None:
+    if isinstance(files.table, Table):
         return _in_libraries(files, compiled, specification, written, lambda of: TableLibrary(of, path), of_table)
-    return _in_libraries(files, compiled, specification, written, lambda of: Library(of, path), CProgram)
+    program = CProgram if files.table is None else InstancesProgram
+    return _in_libraries(files, compiled, specification, written, lambda of: Library(of, path), program)
 
 
 def rust_programs(

@@ -1,4 +1,4 @@
-"""A table of ids in emitted C as something that can be replayed: messages with ids, and what it shows of each."""
+"""Tables in emitted C as something that can be replayed: of ids, and what is shown of each; of open instances."""
 
 from __future__ import annotations
 
@@ -9,7 +9,8 @@ from typing import Any
 
 from ltlc.assurance.c_library import Library
 from ltlc.assurance.c_program import CProgram
-from ltlc.assurance.compiled_program import VERDICTS
+from ltlc.assurance.compiled_program import VERDICTS, require_refused, take
+from ltlc.assurance.instance_traffic import InstanceTraffic
 from ltlc.assurance.library import Monitors
 from ltlc.assurance.messages import Messages
 from ltlc.assurance.replay import Id, Run, Shown, Stepper
@@ -23,7 +24,7 @@ from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.verdicts import Verdict
 from ltlc.specification.evaluation import Value
 from ltlc.specification.expressions import Signal
-from ltlc.specification.specification import Slicing
+from ltlc.specification.specification import Instances, Slicing
 
 
 class TableLibrary(Library):
@@ -91,6 +92,30 @@ class TableProgram(CProgram):
         return step
 
 
+@dataclass(frozen=True)
+class InstancesProgram(CProgram):
+    """The only property in emitted C, which is judged from each message on."""
+
+    def runs(self, compiled: Compiled, samples: Samples) -> Iterator[Run[Any]]:
+        """Messages, some of which open instances."""
+        slicing = compiled.specification.slicing
+        assert isinstance(slicing, Instances)
+        yield from InstanceTraffic(samples, slicing).runs(compiled, self.libraries.own)
+
+    def start(self, settings: Settings) -> Stepper[Event]:
+        """Instances before a run. Raises CompilerError."""
+        instances = self.libraries.of(settings).monitors()
+
+        def step(event: Event) -> Shown:
+            if not (_rings(instances, event.time) if isinstance(event, Quiet) else take(instances, event)):
+                raise RuntimeError(f"{event} is refused")
+            require_refused(instances, event)
+            verdict, failed, owing, _ = instances.show(0)
+            return {"verdict": VERDICTS[verdict].value, "failed": failed, "owing": owing}
+
+        return step
+
+
 def _take(table: Table, event: Event) -> None:
     """Whatever an event brings; a deadline that comes again and again, or a call that is refused, is a fault."""
     match event:
@@ -111,7 +136,7 @@ def _take(table: Table, event: Event) -> None:
         raise RuntimeError(f"{event} is refused")
 
 
-def _rings(table: Table, until: Nanoseconds) -> bool:
+def _rings(table: Monitors, until: Nanoseconds) -> bool:
     """The timer rings when it should, up to a time; whether that ends."""
     rang = None
     while (due := table.next_deadline()) <= until:

@@ -63,9 +63,9 @@ class CompiledProgram:
 
         def step(event: Event) -> Shown:
             settled = self._taken(careful, event)
-            if not _take(late, event) and settings.timeout is None:
+            if not take(late, event) and settings.timeout is None:
                 raise RuntimeError(f"{event} is refused")
-            _require_refused(late, event)
+            require_refused(late, event)
             if careful.show(self.number) != late.show(self.number):
                 raise RuntimeError("deadlines that pass one by one and all at once lead to different verdicts")
             verdict, steps, invalid, _ = careful.show(self.number)
@@ -96,12 +96,12 @@ class CompiledProgram:
             settle(due)
             rang = due
         if not isinstance(event, Quiet):
-            _take(monitors, event)
+            take(monitors, event)
         settle(event.time)
         return moments
 
 
-def _take(monitors: Monitors, event: Event) -> bool:
+def take(monitors: Monitors, event: Event) -> bool:
     """Whether an event is taken."""
     match event:
         case Begun(time):
@@ -118,7 +118,7 @@ def _take(monitors: Monitors, event: Event) -> bool:
             return True
 
 
-def _require_refused(monitors: Monitors, event: Event) -> None:
+def require_refused(monitors: Monitors, event: Event) -> None:
     """Times before that of a message, and those that no run has, are refused and change nothing."""
     if isinstance(event, Heard | Together):
         before = monitors.memory()

@@ -170,6 +170,7 @@ class Expectation:
                 "settled": settled(before.value, changes),
                 "violated": dict(violated),
                 "owed": owed,
+                "owing": len(owed),
                 "failed": len(violated),
             }
 

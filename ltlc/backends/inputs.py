@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from ltlc.backends.spelling import NotInTargetError
 from ltlc.compiler import Compiled
 from ltlc.specification.expressions import Bytes, Each, Field, Match, OfSlice, Parallel, Signal
-from ltlc.specification.specification import Instances, fields
+from ltlc.specification.specification import Instances, Slicing, fields
 
 
 def is_from_session(compiled: Compiled) -> bool:
@@ -15,18 +15,16 @@ def is_from_session(compiled: Compiled) -> bool:
     return not compiled.machine.waits_for
 
 
-def require_no_instances(compiled: Sequence[Compiled]) -> None:
-    """Raise NotInTargetError if a property is judged from each message on."""
-    for each in compiled:
-        if isinstance(of := each.specification.slicing, Instances):
-            raise NotInTargetError(f"`each new`, a monitor for each message of `{of.signal.name}`")
-
-
 def require_whole_runs(compiled: Sequence[Compiled]) -> None:
     """Raise NotInTargetError if a property is judged for each id or message, or reads an id."""
-    require_no_instances(compiled)
-    if any(each.specification.slicing is not None for each in compiled):
-        raise NotInTargetError("`each`, a monitor for each id")
+    for each in compiled:
+        match each.specification.slicing:
+            case Slicing():
+                raise NotInTargetError("`each`, a monitor for each id")
+            case Instances(signal):
+                raise NotInTargetError(f"`each new`, a monitor for each message of `{signal.name}`")
+            case None:
+                pass
     require_no_bytes(compiled)
 
 
@@ -36,13 +34,6 @@ def require_no_bytes(compiled: Sequence[Compiled]) -> None:
         read = (field for signal in each.specification.signals() for _, field in fields(signal))
         if any(Bytes() in field.path for field in read):
             raise NotInTargetError("bytes that are read as an id")
-
-
-def require_no_first_values(compiled: Sequence[Compiled]) -> None:
-    """Raise NotInTargetError if a signal has a value before its first sample."""
-    for each in compiled:
-        if first := next((signal for signal in each.specification.signals() if signal.otherwise is not None), None):
-            raise NotInTargetError(f"`{first.name}`, a value before there is a sample")
 
 
 def origin(signal: Signal) -> str:

@@ -28,7 +28,7 @@ from ltlc.program.expressions import (
 )
 from ltlc.program.functions import Primitive, primitive_of
 from ltlc.program.normal import flattened, settled
-from ltlc.program.types import BOOL, DOUBLE, INTEGER, SINGLE, TEXT, recent_of, type_of
+from ltlc.program.types import BOOL, DOUBLE, INTEGER, SINGLE, TEXT, kept_as, recent_of, type_of
 from ltlc.semantics import ltl
 from ltlc.specification import expressions as e
 from ltlc.specification.evaluation import evaluate, is_true, number
@@ -102,6 +102,14 @@ def read(wanted: e.Read) -> Read:
             return Kept(signal.name, scope, label, type_of(signal))
         case _:
             assert_never(wanted)
+
+
+def first_value(signal: e.Signal) -> Literal | None:
+    """What a signal is before its first sample, in the type in which it is kept; None if it has no value then."""
+    if signal.otherwise is None:
+        return None
+    value, type_ = signal.otherwise.value, kept_as(signal)
+    return Literal(int(value) if type_.scalar.is_integer else value, type_)
 
 
 def double(expression: e.Expression) -> Expression:
@@ -218,6 +226,8 @@ def _with_literal(primitive: Primitive, literal: Literal, other: Expression, is_
     numbers, value = other.type.scalar.integers, literal.value
     if numbers is None:
         return _in_order(primitive, _fitting(value, other), other, is_left)
+    if primitive is not P.EQUAL and value == (numbers.least if (primitive is P.LESS) != is_left else numbers.most):
+        return Literal(primitive is P.AT_MOST, BOOL)  # of which C compilers warn
     if numbers.has(value):
         return _in_order(primitive, Literal(int(value), other.type), other, is_left)
     if primitive is P.EQUAL or math.isnan(value):

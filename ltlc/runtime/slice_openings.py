@@ -98,6 +98,7 @@ class Openings:
         one = self.before.fork()
         one.id, one.invalid_because, one.scheduled = number, self._uncounted, NEVER
         one.verdict, one.counted = Verdict.NOT_STARTED, self.messages.calm
+        one.decided_at = None  # the run may be satisfied, whatever opens
         self.messages.keep(one)
         return one
 

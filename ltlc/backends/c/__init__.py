@@ -11,23 +11,27 @@ from ltlc import __version__
 from ltlc.backends.c.code import comment, lines, literal, remark, unused
 from ltlc.backends.c.expressions import C
 from ltlc.backends.c.functions import texts, uses_math
-from ltlc.backends.c.ids import NAMES, Table, require_a_table, table_of
+from ltlc.backends.c.ids import Table, names_taken, require_a_table, table_of
+from ltlc.backends.c.instances import OpenTable
 from ltlc.backends.c.monitors import PropertyWriter
 from ltlc.backends.c.names import member_names, property_names
 from ltlc.backends.c.paces import Pace, signals_of
 from ltlc.backends.c.samples import Samples
 from ltlc.backends.c.types import plural, pointer
-from ltlc.backends.inputs import require_no_bytes, require_no_first_values
+from ltlc.backends.inputs import require_no_bytes
 from ltlc.backends.names import variable
+from ltlc.backends.spelling import NotInTargetError
 from ltlc.backends.statements import If
 from ltlc.backends.templates import template
 from ltlc.backends.trees import INDENT, Text
 from ltlc.backends.wording import MEANINGS
 from ltlc.compiler import Compiled
+from ltlc.program.lowering import undefined_parts
 from ltlc.runtime.times import NEVER, SECOND
 from ltlc.semantics.verdicts import Verdict
-from ltlc.specification.expressions import Signal
+from ltlc.specification.expressions import New, Signal, inputs
 from ltlc.specification.specification import Specification
+from ltlc.specification.text import text
 
 __all__ = ["Bound", "Files", "emit", "prefix_of"]
 
@@ -48,7 +52,8 @@ class Bound:
 class Files:
     """The texts of the header, the source file and the header for C++, and what a step costs at most.
 
-    `samples`, `properties` and, where ids are judged one by one, the `table` are what the texts were made from.
+    `samples`, `properties` and, where ids or messages are judged one by one, the `table` are what the texts were made
+    from.
     """
 
     stem: str
@@ -59,7 +64,7 @@ class Files:
     bound: Bound
     samples: Samples
     properties: tuple[PropertyWriter, ...]
-    table: Table | None = None
+    table: Table | OpenTable | None = None
 
     def signals_of(self, number: int) -> list[Signal]:
         """The fields that the property with this number is computed from."""
@@ -119,10 +124,19 @@ def emit(
     """
     require_no_bytes(compiled)
     require_a_table(compiled, specification)
-    require_no_first_values(compiled)
+    _require_known_at_first(compiled)
     stem = stem or PurePath(specification.source.name).stem
     prefix = prefix_of(stem)
     return _File(compiled, specification, stem, prefix, is_grouped).files()
+
+
+def _require_known_at_first(compiled: Sequence[Compiled]) -> None:
+    """Raise NotInTargetError if something that may be NaN is computed of nothing but values before the first sample."""
+    for each in compiled:
+        for part in (part for atom in each.specification.atoms for part in undefined_parts(atom.condition)):
+            read = [i.signal for i in inputs(part) if not isinstance(i, New)]
+            if read and all(signal.otherwise is not None for signal in read):
+                raise NotInTargetError(f"`{read[0].name}` alone in `{text(part)}`, which may have no value")
 
 
 class _File:
@@ -145,13 +159,12 @@ class _File:
         self.helpers = C(prefix)
         self.given = Samples([c.specification for c in compiled], self.helpers, is_grouped)
         signals = signals_of(compiled, self.given, self.helpers, self.is_rated)
-        self.table = table_of(compiled, self.given)
-        taken = NAMES.split() if self.table else ()
-        members = property_names(prefix, *taken, *(each.name for each in signals))
+        members = property_names(prefix, *names_taken(compiled), *(each.name for each in signals))
         self.properties = [
             PropertyWriter(c, members.unique(variable(c.specification.label)), prefix, kept)
             for c, kept in zip(compiled, signals, strict=True)
         ]
+        self.table = table_of(self.properties)
         self.paces = [
             Pace(kept, tuple(p for p in self.properties if p.signals is kept), specification.timeout)
             for kept in {id(each): each for each in signals}.values()
@@ -217,11 +230,17 @@ class _File:
             "\n".join([*p.schedule, *p.clock_step, *p.step, *p.is_due, *p.hearing()]) for p in self.properties
         ]
         counts = [text for _, text in self.helpers.counts.values()]
-        code = "\n".join([*counts, *properties, *(line for _, statements in judged for line in statements)])
+        in_table = [] if self.table is None else self.table.text()
+        code = "\n".join([*counts, *properties, *(line for _, statements in judged for line in statements), *in_table])
         functions = texts(code, self.helpers.arrays, self.prefix)
         about = comment(f"The monitors that {self.stem}.h declares; see there.")
         return template(__name__, "source.c.jinja").render(
-            {**context, **self._in_table(), "about": about, "properties": properties},
+            {
+                **context,
+                **({} if self.table is None else self.table.source()),
+                "about": about,
+                "properties": properties,
+            },
             math=uses_math("\n".join([*functions, code])),
             functions=functions,
             counts=counts,
@@ -235,13 +254,6 @@ class _File:
             begun=[line for p in self.properties for line in p.session()],
             first=[line for p in self.properties if p.from_session for line in p.first()],
         )
-
-    def _in_table(self) -> dict[str, object]:
-        """What the functions of a table are made of, if there is one."""
-        if self.table is None:
-            return {}
-        own, shared = ("".join(f"{c.text} || " for c in of) for of in (self.table.own, self.table.shared))
-        return {"name": self.properties[0].name, "own": own, "foreign": shared}
 
     def _period(self) -> tuple[int, int, int]:
         """The time between ticks: whole nanoseconds, and a fraction of one."""

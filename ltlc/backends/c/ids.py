@@ -1,13 +1,16 @@
-"""A property that is judged for each id, in C: a table of ids with monitors of their own, without a heap."""
+"""A property that is judged for each id, in C: a table of ids with monitors of their own, without a heap.
+
+What a file has of it, or of instances that messages open, and what is refused of both.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from ltlc.backends.c.samples import Samples
+from ltlc.backends.c.instances import OpenTable
+from ltlc.backends.c.monitors import PropertyWriter
 from ltlc.backends.c.types import type_name
-from ltlc.backends.inputs import require_no_instances
 from ltlc.backends.spelling import NotInTargetError
 from ltlc.backends.trees import Text
 from ltlc.compiler import Compiled
@@ -15,20 +18,19 @@ from ltlc.program.as_new import states_as_new
 from ltlc.program.lowering import read
 from ltlc.program.types import Scalar, type_of
 from ltlc.specification.expressions import Signal
-from ltlc.specification.specification import Slicing, Specification, topics, topics_of
+from ltlc.specification.specification import Instances, Slicing, Specification, topics, topics_of
 
 MOST = 1 << 24
-"""How many ids a table has places for, at most."""
+"""How many ids a table has places for, at most, and how many instances are open."""
 
-NAMES = """
+_NAMES = """
 ids ids_advance ids_init ids_next_deadline ids_share ids_step ids_verdict left_out_of size slice slice_of
 """
-"""What is declared for a table, after the prefix."""
 
 
 @dataclass(frozen=True)
 class Table:
-    """The table of at most `limit` ids of type `key`, each with the monitors of one property.
+    """The table of at most `limit` ids of type `key`, each with the monitors of the property called `name`.
 
     A slice in one of the states `as_new` is dropped. Samples have messages of a slice where one of `own` holds, and of
     all slices where one of `shared` does.
@@ -39,6 +41,12 @@ class Table:
     as_new: tuple[int, ...]
     own: Sequence[Text]
     shared: Sequence[Text]
+    name: str
+
+    stem = "ids"
+    """What the names of its functions begin with, after the prefix."""
+    names = _NAMES.split()
+    """What is declared for it, after the prefix."""
 
     @property
     def places(self) -> int:
@@ -50,21 +58,44 @@ class Table:
         flags = (code.text for code in (*self.own, *self.shared))
         return [self.key, *map(str, (self.limit, *self.as_new)), *flags]
 
+    def source(self) -> dict[str, object]:
+        """What its functions are made of."""
+        own, shared = ("".join(f"{code.text} || " for code in of) for of in (self.own, self.shared))
+        return {"name": self.name, "own": own, "foreign": shared}
 
-def table_of(compiled: Sequence[Compiled], samples: Samples) -> Table | None:
-    """The table of ids, if there are ids; `samples` are those of all properties."""
-    slicing = compiled[0].specification.slicing if compiled else None
-    if not isinstance(slicing, Slicing):
-        return None
-    [one] = compiled
+
+def names_taken(compiled: Sequence[Compiled]) -> Sequence[str]:
+    """What is declared for ids or instances, after the prefix."""
+    match compiled[0].specification.slicing if compiled else None:
+        case Slicing():
+            return Table.names
+        case Instances():
+            return OpenTable.names
+        case None:
+            return ()
+
+
+def table_of(properties: Sequence[PropertyWriter]) -> Table | OpenTable | None:
+    """The table of ids or of instances, if the only property has one."""
+    match properties[0].specification.slicing if properties else None:
+        case Slicing() as slicing:
+            return _of_ids(properties[0], slicing)
+        case Instances() as instances:
+            return OpenTable(instances, properties[0])
+        case None:
+            return None
+
+
+def _of_ids(one: PropertyWriter, slicing: Slicing) -> Table:
     assert slicing.limit is not None
-    as_new = states_as_new(one.machine, one.specification, slicing)
+    samples = one.signals.given
     return Table(
         slicing.limit,
         type_name(_scalar(slicing.keys)),
-        tuple(sorted(as_new)),
+        tuple(sorted(states_as_new(one.machine, one.specification, slicing))),
         samples.news(slicing.topics),
-        samples.news(shared_topics(one, slicing)),
+        samples.news(shared_topics(one.compiled, slicing)),
+        one.name,
     )
 
 
@@ -74,21 +105,25 @@ def shared_topics(compiled: Compiled, slicing: Slicing) -> list[str]:
 
 
 def require_a_table(compiled: Sequence[Compiled], specification: Specification) -> None:
-    """Raise NotInTargetError if a property is judged for each id, and a table cannot be all that is needed for it."""
-    require_no_instances(compiled)
+    """Raise NotInTargetError if a property is judged for each id or message, and a table cannot be all it needs."""
     for each in compiled:
-        if not isinstance(slicing := each.specification.slicing, Slicing):
+        slicing = each.specification.slicing
+        if slicing is None:
             continue
+        form, what = ("`each`", "ids") if isinstance(slicing, Slicing) else ("`each new`", "messages")
         if slicing.limit is None:
-            raise NotInTargetError("`each` without a limit", instead="write `limit N`: memory is reserved for N ids")
+            raise NotInTargetError(
+                f"{form} without a limit", instead=f"write `limit N`: memory is reserved for N {what}"
+            )
         if slicing.limit > MOST:
-            raise NotInTargetError(f"`limit {slicing.limit}`, more than {MOST} ids")
+            raise NotInTargetError(f"`limit {slicing.limit}`, more than {MOST} {what}")
         if len(compiled) > 1:
-            raise NotInTargetError("`each` beside other properties: in C it needs a file of its own")
+            raise NotInTargetError(f"{form} beside other properties: in C it needs a file of its own")
         if specification.rate is not None or specification.timeout is not None:
-            raise NotInTargetError("`each` with `_rate_` or `_timeout_`")
-        _ = _scalar(slicing.keys)
-        _require_readable(each, slicing)
+            raise NotInTargetError(f"{form} with `_rate_` or `_timeout_`")
+        if isinstance(slicing, Slicing):
+            _ = _scalar(slicing.keys)
+            _require_readable(each, slicing)
 
 
 def _scalar(keys: Sequence[Signal]) -> Scalar:

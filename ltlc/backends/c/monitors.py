@@ -26,7 +26,7 @@ from ltlc.program.types import DOUBLE, Scalar, type_of
 from ltlc.semantics.monitor import Target
 from ltlc.semantics.verdicts import Verdict
 from ltlc.specification.expressions import Current, Expression, New
-from ltlc.specification.specification import topics_of
+from ltlc.specification.specification import Instances, topics_of
 
 
 def _wording(prefix: str, name: str) -> Wording:
@@ -209,26 +209,28 @@ class PropertyWriter:
         about = comment(f"The next clock step of {self.specification.label}: what changes by itself after `due`.")
         return [*shared, *self._function(about, "expire", [], [*read, *body])]
 
+    @property
+    def state_type(self) -> str:
+        """The type of the state of its monitor."""
+        return f"uint{next(bits for bits in (8, 16, 32) if len(self.machine.states) < 2**bits)}_t"
+
+    @property
+    def dues(self) -> list[str]:
+        """The members that say when clocks are due, and the next clock step."""
+        return list(dict.fromkeys([*self.clocks, "due"])) if self.timed else []
+
     def members(self) -> list[str]:
         """The struct."""
-        state = (
-            "uint8_t"
-            if len(self.machine.states) < 2**8
-            else "uint16_t"
-            if len(self.machine.states) < 2**16
-            else "uint32_t"
-        )
-        due = list(dict.fromkeys([*self.clocks, "due"])) if self.timed else []
         fields = [
             "int64_t since; /* when the verdict came, in ns */",
-            *(f"int64_t {name};" for name in due),
+            *(f"int64_t {name};" for name in self.dues),
             *(f"int64_t {each.times}[{each.of.times}];" for each in self.counts),
             *(f"uint32_t {each.times}_count;" for each in self.counts),
             "uint32_t invalid; /* steps skipped because a value was NaN */",
             "uint32_t apart;",
             *(f"{self.helpers.declared(named.type, named.text)};" for named in self.openings.values()),
             *(f"{self.helpers.declared(kept.type, name)};" for kept, name in self.clock_steps.taken.items()),
-            f"{state} state;",
+            f"{self.state_type} state;",
             "uint8_t verdict; /* one of the verdicts */",
             *(f"bool {name} : 1;" for name in self.clock_steps.conditions()),
             *(f"bool {held} : 1;" for each in self.counts for held in each.members()),
@@ -238,16 +240,20 @@ class PropertyWriter:
     def first_dues(self) -> list[str]:
         """Statements after which no clock is due, and what is counted is late."""
         late = {each.clock for each in self.counts}
-        dues = dict.fromkeys([*self.clocks, "due"]) if self.timed else ()
         never = f"{self.prefix.upper()}_NEVER"
-        return [f"{INDENT}monitors->{self.name}.{due} = {'-' * (due in late)}{never};" for due in dues]
+        return [f"{INDENT}monitors->{self.name}.{due} = {'-' * (due in late)}{never};" for due in self.dues]
 
     def triggers(self) -> list[Code]:
-        """One of these holds where a step of the property may be due; with a rate, any tick is one of its news."""
-        found: list[Code] = list(self.signals.given.fresh(self.inputs))
+        """One of these holds where a step of the property may be due; with a rate, any tick is one of its news.
+
+        A message that opens an instance is a step of all of them.
+        """
         if self.signals.is_rated and (self.topics or self.from_session):
             return [Text("true")]
-        return [*found, *(Text(f"signals->{self.signals.heard[topic].name}") for topic in self.topics)]
+        given, slicing = self.signals.given, self.specification.slicing
+        opening = given.news(topics_of(slicing.signal)) if isinstance(slicing, Instances) else ()
+        news = (Text(f"signals->{self.signals.heard[topic].name}") for topic in self.topics)
+        return list(dict.fromkeys([*given.fresh(self.inputs), *news, *opening]))
 
     def _write_due(self) -> None:
         """The function that says whether a step is due; without anything to read, none ever is."""
@@ -316,6 +322,8 @@ class PropertyWriter:
         """Where one of these holds, messages have come without the value that they should bring."""
         by_read = {read(i): i for i in self.inputs}
         for wanted, news, _ in self.machine.excused:
+            if not news:  # it has a value before the first one
+                continue
             came = [Text(self.given[by_read[each]].text) for each in news]
             yield conjunction([_not_all(self.signals.ready([by_read[wanted]])), *came])
 

@@ -48,6 +48,8 @@ class Pace:
         """Statements that note which messages are news; with a rate, up to the next tick."""
         found: list[Statement] = []
         for heard in self.signals.heard.values():
+            if heard.topic in self.signals.given.marks:
+                continue
             target = f"{self.member}.{heard.name}"
             before = [Text(target)] if self.signals.is_rated else []
             found.append(Do(f"{target} = ", disjunction([*before, *self.signals.given.news([heard.topic])])))

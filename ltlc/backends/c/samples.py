@@ -15,7 +15,7 @@ from ltlc.program.lowering import read
 from ltlc.program.types import type_of
 from ltlc.specification.expressions import Field, Input, Match, New, Parallel, Signal
 from ltlc.specification.samples import Sample, entry, in_order, together
-from ltlc.specification.specification import PropertySpecification, fields, topics_of
+from ltlc.specification.specification import Instances, PropertySpecification, fields, topics_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,14 +37,19 @@ class Heard:
 
 
 class Samples:
-    """The signals that `properties` read from messages, as a step is given them: `together`, if that `is_grouped`."""
+    """The signals that `properties` read from messages, as a step is given them: `together`, if that `is_grouped`.
+
+    The messages that open instances are among them. `marks` are topics without messages: their news is set otherwise.
+    """
 
     def __init__(self, properties: Sequence[PropertySpecification], helpers: C, is_grouped: bool = True) -> None:
         self._helpers = helpers
         wanted = [i for p in properties for i in p.inputs()]
         self.groups = _named(together(in_order(wanted), is_grouped))
         self.group_of = {signal: group for group in self.groups for signal in group.readings}
-        news = dict.fromkeys(i for i in wanted if isinstance(i, New))
+        instances = [of for p in properties if isinstance(of := p.slicing, Instances)]
+        self.marks = frozenset(of.mark.name for of in instances)
+        news = dict.fromkeys([*(i for i in wanted if isinstance(i, New)), *(New(of.signal) for of in instances)])
         self.heard = {heard.topic: heard for heard in self._heard(news)}
         self.fields = self._fields()
 
@@ -52,10 +57,10 @@ class Samples:
         local = member_names()
         for topic in dict.fromkeys(topic for each in news for topic in topics_of(each.signal)):
             name = next(input_name(read(each)) for each in news if topic in topics_of(each.signal))
-            always = any(
+            is_told = topic not in self.marks and not any(
                 isinstance(signal.definition, Field) and entry(signal.definition) == topic for signal in self.group_of
             )
-            yield Heard(topic, local.unique(name), not always)
+            yield Heard(topic, local.unique(name), is_told)
 
     def _fields(self) -> dict[Signal, str]:
         """What a step is given of each reading."""

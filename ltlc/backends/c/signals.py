@@ -14,7 +14,7 @@ from ltlc.backends.names import Names, variable
 from ltlc.backends.operators import flat as text_of
 from ltlc.backends.statements import Do, If, Statement, conjunction, disjunction
 from ltlc.backends.trees import INDENT, Chain, Code, Text
-from ltlc.program.lowering import double, has_sample, lowered, read, undefined_parts
+from ltlc.program.lowering import double, first_value, has_sample, lowered, read, undefined_parts
 from ltlc.program.types import BOOL, DOUBLE, TEXT, Type, kept_as, recent_of
 from ltlc.specification import expressions as e
 from ltlc.specification.expressions import Expression, Field, Input, New, Past, Recent, Signal, Slope, ValueType
@@ -138,8 +138,8 @@ class Signals:
         return Kept(name, signal, kept_as(signal), depth_of(signal, read_of), has_times, has_arrays)
 
     def ready(self, wanted: Iterable[Input]) -> list[Code]:
-        """All of these hold if every input has a value."""
-        wanted = [i for i in wanted if not isinstance(i, New) and not i.signal.is_constant]
+        """All of these hold if every input has a value, as those have that have one before their first sample."""
+        wanted = [i for i in wanted if not isinstance(i, New) and not _has_value_at_first(i.signal)]
         parts = [Text(f"signals->has_{group.name}") for group in self.given.sources(wanted)]
         return [*parts, *dict.fromkeys(code for i in wanted for code in self._long_enough(i))]
 
@@ -149,7 +149,7 @@ class Signals:
             yield Chain((Text(f"signals->{kept.name}_count"), Text(f"{reach(wanted)}u")), (">=",))
         else:
             for part in wanted.signal.inputs:
-                if not part.signal.is_constant:
+                if not _has_value_at_first(part.signal):
                     yield from self._long_enough(part)
 
     def named(self, wanted: Input) -> Named:
@@ -175,10 +175,15 @@ class Signals:
                 return Named(kept.latest, kept.type)
 
     def made_ready(self) -> list[str]:
-        """Statements without which something has no value before the first sample: a string is none if it is 0."""
-        kept = (self.kept[signal] for signal in self.kept if signal in self.excused)
-        places = (f"{each.name}[0]" if each.depth > 1 else each.name for each in kept if each.type == TEXT)
-        return [f'{INDENT}monitors->{self.name}.{place} = "";' for place in places]
+        """Statements without which something has not its value before the first sample: a string is none if it is 0."""
+        found: list[Statement] = []
+        for signal, kept in self.kept.items():
+            place = f"monitors->{self.name}.{kept.name}{'[0]' if kept.depth > 1 else ''}"
+            if (first := first_value(signal)) is not None:
+                found.append(Do(f"{place} = ", self.helpers.speller({}).code(first)))
+            elif signal in self.excused and kept.type == TEXT:
+                found.append(f'{place} = ""')
+        return lines(found, INDENT)
 
     def numbers(self) -> list[str]:
         """Where all values are of which one that is NaN makes a step of some property invalid."""
@@ -284,3 +289,8 @@ class Signals:
             *((f"{name}_times[{name}_latest] = time",) if kept.has_times else ()),
             If(Text(f"{name}_count < {depth}u"), (f"{name}_count++",)),
         )
+
+
+def _has_value_at_first(signal: Signal) -> bool:
+    """Whether there is a value before any sample."""
+    return signal.is_constant or signal.otherwise is not None

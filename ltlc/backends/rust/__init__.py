@@ -11,7 +11,7 @@ from pathlib import PurePath
 
 from ltlc import __version__
 from ltlc.backends import c
-from ltlc.backends.inputs import origin, require_no_first_values, require_whole_runs
+from ltlc.backends.inputs import origin, require_whole_runs
 from ltlc.backends.names import class_name
 from ltlc.backends.rust.code import comment
 from ltlc.backends.rust.functions import FUNCTIONS, ONLY_IN_C, texts
@@ -65,7 +65,6 @@ def emit(compiled: Sequence[Compiled], specification: Specification) -> str:
 def in_c(compiled: Sequence[Compiled], specification: Specification) -> c.Files:
     """The files of C from which Rust is printed. Raises NotInTargetError."""
     require_whole_runs(compiled)
-    require_no_first_values(compiled)
     if specification.rate is not None:
         raise NotInTargetError("ticks of `_rate_`")
     for primitive in (p.primitive for each in compiled for whole in _calculated(each) for p in _applied(whole)):

@@ -11,13 +11,14 @@ from fractions import Fraction
 
 from ltlc.assurance.reading.c.definitions import parameters
 from ltlc.assurance.reading.c.ids import Table
+from ltlc.assurance.reading.c.instances import OpenTable
 from ltlc.assurance.reading.c.members import Kept, Members, Pace, Struct
 from ltlc.assurance.reading.trees import NotUnderstoodError
 from ltlc.program.types import TEXT
 from ltlc.runtime.times import NEVER, SECOND
 from ltlc.semantics.verdicts import Verdict
 from ltlc.specification.expressions import Field, New
-from ltlc.specification.specification import Slicing, news_within, topics_of
+from ltlc.specification.specification import Instances, Slicing, news_within, topics_of
 
 
 def when(condition: str, *then: str, otherwise: Sequence[str] = ()) -> str:
@@ -50,14 +51,20 @@ class Around:
         self.is_aging = any(each.ages for each in self.structs)
         self.table = self._table()
 
-    def _table(self) -> Table | None:
-        """The table of ids, if the only property of a file is judged for each."""
-        slicings = [each.of.specification.slicing for each in self.structs]
-        if not any(slicings):
-            return None
-        if len(slicings) > 1 or not isinstance(slicings[0], Slicing):
-            raise NotUnderstoodError("a property that is judged for each id is in a file of its own")
-        return Table(self.prefix, self.structs[0], slicings[0], self.given, bool(self.expires))
+    def _table(self) -> Table | OpenTable | None:
+        """The table of ids or instances, if the only property of a file is judged for each."""
+        of, is_timed = [each.of.specification.slicing for each in self.structs], bool(self.expires)
+        match of:
+            case [Slicing() as slicing]:
+                return Table(self.prefix, self.structs[0], slicing, self.given, is_timed)
+            case [Instances() as instances]:
+                mark = self.paces[0].heard[instances.mark.name]
+                own = (self.prefix, self.structs[0], instances, self.given, mark)
+                return OpenTable(*own, is_timed, self.has_session)
+            case _ if any(of):
+                raise NotUnderstoodError("a property that is judged for each id or message is in a file of its own")
+            case _:
+                return None
 
     def types(self) -> dict[str, str]:
         """The types of the header that are of this file only, but for the names of its properties."""
@@ -118,10 +125,16 @@ class Around:
         return [*own, *(self.table.functions() if self.table else ())]
 
     def triggers(self, pace: Pace, struct: Struct) -> list[str]:
-        """One of these holds where a step of a property may be due; with a rate, any tick is one of its news."""
+        """One of these holds where a step of a property may be due; with a rate, any tick is one of its news.
+
+        What opens an instance is one of all.
+        """
         if self.rate is not None and (struct.news or struct.is_from_session):
             return ["true"]
-        return [*self.given.fresh(struct.inputs), *(f"signals->{pace.heard[topic]}" for topic in struct.news)]
+        slicing = struct.of.specification.slicing
+        opening = self.given.news(topics_of(slicing.signal)) if isinstance(slicing, Instances) else ()
+        news = (f"signals->{pace.heard[topic]}" for topic in struct.news)
+        return list(dict.fromkeys([*self.given.fresh(struct.inputs), *news, *opening]))
 
     def is_due(self, pace: Pace, struct: Struct) -> list[str]:
         """Something that it reads is new, all of it has a value, and no number that is read is NaN."""
@@ -262,15 +275,18 @@ class Around:
             for due in each.dues
         )
         end = [] if self.timeout is None else [f"monitors->end = {self.never};"]
-        texts = (f'{place} = "";' for pace in self.paces for place in self.texts_at_first(pace))
-        return [f"*monitors = ({self.prefix}_monitors){{0}};", "monitors->time = INT64_MIN;", *end, *never, *texts]
+        values = (text for pace in self.paces for text in self.values_at_first(pace))
+        return [f"*monitors = ({self.prefix}_monitors){{0}};", "monitors->time = INT64_MIN;", *end, *never, *values]
 
-    def texts_at_first(self, pace: Pace) -> Iterator[str]:
-        """The strings that may be read before they have come."""
+    def values_at_first(self, pace: Pace) -> Iterator[str]:
+        """What has a value before its first sample has that, and strings that may be read then are empty."""
         names = {e.input.signal for s in pace.properties for e in s.of.machine.excused}
-        for signal, kept in pace.kept.items():
-            if signal.name in names and kept.type == TEXT:
-                yield f"monitors->{pace.name}.{kept.name}{'[0]' if kept.depth > 1 else ''}"
+        for number, (signal, kept) in enumerate(pace.kept.items()):
+            place = f"monitors->{pace.name}.{kept.name}{'[0]' if kept.depth > 1 else ''}"
+            if signal.otherwise is not None:
+                yield f"{place} = _first{pace.suffix}_{number};"
+            elif signal.name in names and kept.type == TEXT:
+                yield f'{place} = "";'
 
     def begin_session(self) -> list[str]:
         """Ticks that begin with the session do, and ages count from there."""
@@ -312,6 +328,8 @@ class Around:
         for pace in self.paces:
             yield from self.ticking(pace)
             for topic, name in pace.heard.items():
+                if topic in self.given.marks:
+                    continue
                 target = f"monitors->{pace.name}.{name}"
                 before = [target] if self.rate is not None else []
                 yield f"{target} = {' || '.join([*before, *self.given.news([topic])])};"

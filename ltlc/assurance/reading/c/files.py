@@ -104,6 +104,7 @@ class _File:
         for pace in self.members.paces:
             values = left_open[f"judge{pace.suffix}"]
             self._require_derived(pace, values)
+            self._require_first(pace, left_open.get(f"{self.definitions.prefix}_init", {}))
             for struct in pace.properties:
                 calls = [nodes.get(f"_step_{struct.name}") for nodes in left_open.values()]
                 call = next((each for each in calls if each is not None), None)
@@ -132,6 +133,25 @@ class _File:
             for name, expression in right.items():
                 if reader.expression(scope.tree(values[name])) != rounded(normal(expression)):
                     raise NotUnderstoodError(f"`{kept.name}` is not computed as it is defined")
+
+    def _require_first(self, pace: Pace, values: Mapping[str, Node]) -> None:
+        """What has a value before its first sample has the right one."""
+        for number, kept in enumerate(pace.kept.values()):
+            if kept.of.otherwise is None:
+                continue
+            found: object = None
+            right = kept.of.otherwise.value
+            match Scope(self.definitions, {}, {}).tree(values[f"_first{pace.suffix}_{number}"]):
+                case Constant(value):
+                    found = value
+                case Apply("-", (Constant(float() as value),)):
+                    found = -value
+                case _:
+                    pass
+            if kept.type.is_number:
+                right = int(right) if kept.type.scalar.is_integer else float(right)
+            if repr(found) != repr(right):  # which tells true from 1, and -0.0 from 0.0
+                raise NotUnderstoodError(f"`{kept.name}` does not begin as it is defined")
 
 
 def readings(definitions: Definitions, pace: Pace, inputs: Sequence[e.Input]) -> dict[str, Named]:

@@ -25,7 +25,7 @@ from ltlc.specification import expressions as e
 from ltlc.specification.evaluation import number
 from ltlc.specification.expressions import Field, Input, Match, New, Parallel, Past, Recent, Signal, Slope
 from ltlc.specification.samples import Sample, entry, in_order, reach, together
-from ltlc.specification.specification import PropertySpecification, fields, topics, topics_of
+from ltlc.specification.specification import Instances, PropertySpecification, fields, topics, topics_of
 from ltlc.specification.wire import as_double
 
 
@@ -109,9 +109,11 @@ class Struct:
 
     @property
     def excused(self) -> Iterator[tuple[Input, list[Input]]]:
-        """The others, but for news, each with the news without which it may have no value."""
+        """The others, but for news, each with the news without which it may have no value; some always have one."""
         by_read = {read(each): each for each in self.inputs}
         for wanted, news, _ in self.of.machine.excused:
+            if not news:
+                continue
             yield by_read[wanted], [by_read[each] for each in news]
 
     @property
@@ -125,10 +127,14 @@ class Struct:
         """What of that is computed where samples are kept; the rest depends on openings, and a step computes it."""
         return [part for part in self.undefined if not any(e.openings(part)) and any(True for _ in e.inputs(part))]
 
+    @property
+    def width(self) -> int:
+        """How many bits its state has."""
+        return next(bits for bits in (8, 16, 32) if len(self.of.machine.states) < 2**bits)
+
     def declared(self, prefix: str) -> list[str]:
         """The members that there have to be."""
         machine = self.of.machine
-        width = next(bits for bits in (8, 16, 32) if len(machine.states) < 2**bits)
         types = {name: type_text(prefix, r.kept.type) for name, r in zip(self.kept, machine.registers, strict=True)}
         nexts = {f"{name}_next": type_ for name, type_ in types.items()}
         return [
@@ -140,7 +146,7 @@ class Struct:
             "uint32_t apart",
             *(f"{_constant(type_)}{name}" for name, type_ in types.items()),
             *(f"{_constant(nexts[name])}{name}" for name in self.taken),
-            f"uint{width}_t state",
+            f"uint{self.width}_t state",
             "uint8_t verdict",
             *(f"bool {name} : 1" for name in (*self.held, *self.occurring)),
         ]
@@ -149,6 +155,11 @@ class Struct:
 def _constant(type_: str) -> str:
     """A type in a declaration: strings are constant."""
     return f"const {type_}" if type_.endswith("*") else f"{type_} "
+
+
+def declared(prefix: str, type_: Type) -> str:
+    """A type where a constant is declared."""
+    return _constant(type_text(prefix, type_)).removeprefix("const ")
 
 
 @dataclass(frozen=True)
@@ -203,10 +214,14 @@ class Group(NamedTuple):
 
 @dataclass(frozen=True)
 class Given:
-    """What comes in at one moment: samples, and for each topic in `told` whether there is a message on it."""
+    """What comes in at one moment: samples, and for each topic in `told` whether there is a message on it.
+
+    On `marks` there is none, and their news is set otherwise.
+    """
 
     groups: Sequence[Group]
     told: Mapping[str, str]
+    marks: frozenset[str]
 
     def groups_of(self, wanted: Iterable[Input]) -> list[Group]:
         """What inputs are computed from, in the order of first use."""
@@ -285,8 +300,8 @@ class Pace:
         return [*found, *(self.values[value].ago() for value in struct.values)]
 
     def ready(self, given: Given, wanted: Iterable[Input]) -> list[str]:
-        """All of these hold if every input has a value."""
-        wanted = [i for i in wanted if not isinstance(i, New) and i.signal in self.kept]
+        """All of these hold if every input has a value, as those have that have one before their first sample."""
+        wanted = [i for i in wanted if not isinstance(i, New) and self._is_awaited(i.signal)]
         flags = [f"signals->{group.flag}" for group in given.groups_of(wanted)]
         return [*flags, *dict.fromkeys(each for i in wanted for each in self._long_enough(i))]
 
@@ -296,8 +311,11 @@ class Pace:
             yield f"signals->{kept.name}_count >= {reach(wanted)}u"
         else:
             for part in wanted.signal.inputs:
-                if part.signal in self.kept:
+                if self._is_awaited(part.signal):
                     yield from self._long_enough(part)
+
+    def _is_awaited(self, signal: Signal) -> bool:
+        return signal in self.kept and signal.otherwise is None
 
     def declared(self, prefix: str, is_rated: bool) -> list[str]:
         """The members that there have to be."""
@@ -319,8 +337,10 @@ class Members:
         if len(names) != len(properties):
             raise NotUnderstoodError(f"there are {len(names)} monitors, not {len(properties)}")
         self.structs = [self._struct(name, of) for name, of in zip(names, properties, strict=True)]
-        self._wanted = [i for each in self.structs for i in each.inputs]
-        self._topics = list(dict.fromkeys(topic for each in self.structs for topic in each.news))
+        self._instances = [of for each in self.structs if isinstance(of := each.of.specification.slicing, Instances)]
+        openers = [New(of.signal) for of in self._instances]
+        self._wanted = [*(i for each in self.structs for i in each.inputs), *openers]
+        self._topics = list(dict.fromkeys(t for i in self._wanted if isinstance(i, New) for t in topics_of(i.signal)))
         self.given = self._given(is_grouped)
         self.paces = list(self._paces(is_rated))
 
@@ -355,10 +375,11 @@ class Members:
                 _require_recalled(name, signal.name)
         read = [signal.definition for group in groups for signal in group.fields]
         whole = {entry(each) for each in read if isinstance(each, Field)}
-        told = {topic: next(names) for topic in self._topics if topic not in whole}
+        marks = frozenset(of.mark.name for of in self._instances)
+        told = {topic: next(names) for topic in self._topics if topic not in whole | marks}
         for topic, name in told.items():
             self._require_news(topic, name)
-        return Given(groups, told)
+        return Given(groups, told, marks)
 
     def _require_news(self, topic: str, name: str) -> None:
         """Raise NotUnderstoodError unless `name` is that of news on a topic."""
@@ -409,7 +430,7 @@ def _is_constant(signal: Signal) -> bool:
 def _kept(signal: Signal, needed: Sequence[Input], names: list[str]) -> Kept:
     of_signal = [i for i in needed if i.signal == signal]
     depth = max([1 if signal.when is None else 2, *map(reach, of_signal)])
-    is_computed = not isinstance(signal.definition, Field) and signal.when is None
+    is_computed = not isinstance(signal.definition, Field) and not signal.is_taken
     type_ = DOUBLE if is_computed and signal.type is e.ValueType.NUMBER else type_of(signal)
     has_times, has_arrays = (any(isinstance(i, each) for i in of_signal) for each in (Slope, Recent))
     return _taken(Kept(signal.name, signal, type_, depth, has_times, has_arrays), names)
