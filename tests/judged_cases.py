@@ -5,7 +5,7 @@
     python tests/judged_cases.py FOLDER
     proofs/checker/judge FOLDER/certificates FOLDER/evidence > tests/data/judged_cases.txt
 
-A line is what the judge says of one of the `cases`, in their order.
+After the first line, a line is what the judge says of one of the `cases`, in their order.
 """
 
 from __future__ import annotations

@@ -104,7 +104,7 @@ let read_end s =
   | [ verdict; decided ] when Stdlib.List.mem verdict verdicts -> until, verdict, time decided
   | _ -> fail "not a verdict and its time"
 
-(* The head of a document: the digest of the certificates that it names. *)
+(* The head of a document: the digest of the certificates that it names, and the names of the files of the recording. *)
 let read_head s =
   if s.next <> Some "ltlc-evidence 1" then fail "this is no evidence";
   s.sum <- Sha256.start ();
@@ -113,15 +113,20 @@ let read_head s =
   ignore (with_sha256 (need s "specification "));
   let digest = after "sha256 " (need s "certificates ") in
   if not (is_sha256 digest) then fail "not a digest";
-  ignore (with_sha256 (need s "recording "));
-  ignore (Stdlib.List.map with_sha256 (all s "recording "));
+  let file text =
+    let name_and_size, _ = with_sha256 text in
+    match String.rindex_opt name_and_size ' ' with
+    | Some i -> String.sub name_and_size 0 i
+    | None -> fail "a file has a name and a size" in
+  let first = file (need s "recording ") in
+  let files = first :: Stdlib.List.map file (all s "recording ") in
   ignore (Stdlib.List.map with_sha256 (all s "definition "));
   ignore (optional s "rate ");
   ignore (optional s "timeout ");
   if s.next = Some "stamp header" then ignore (take s);
   ignore (optional s "from ");
   ignore (optional s "to ");
-  digest
+  digest, files
 
 (* The last line of a document, which is the digest of all others. *)
 let read_last s =

@@ -157,7 +157,8 @@ let judge_claim s entries =
 
 (* One document: whether all that it claims is right. *)
 let judge_document s entries digest =
-  let named = read_head s in
+  let named, files = read_head s in
+  Printf.printf "evidence of %s\n" (String.concat ", " files);
   if named <> digest then Printf.printf "REFUSED: the certificates are not those that the evidence names\n";
   let rec claims right =
     if s.next <> Some "" then right
