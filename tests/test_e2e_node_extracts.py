@@ -42,10 +42,29 @@ def found_in(path: Path) -> list[tuple[str, int, bytes]]:
     return [(topic, sequence, data) for topic, _, sequence, data in read]
 
 
-def numbers_in(path: Path, topic: str = "/x") -> list[float]:
+def numbers_in(path: Path) -> list[float]:
+    """What came on /x after the first ones."""
     with AnyReader([path]) as reader:
-        read: list[Any] = [reader.deserialize(d, c.msgtype) for c, _, d in reader.messages() if c.topic == topic]
-    return [each.data for each in read]
+        read: list[Any] = [reader.deserialize(d, c.msgtype) for c, _, d in reader.messages() if c.topic == "/x"]
+    return [each.data for each in read if each.data != FIRST]
+
+
+FIRST = 0.5
+"""What is sent until the node has heard it."""
+
+
+def publisher(network: Network, node: Node) -> Any:
+    """A publisher of x that the node hears; one that counts as matched may be so with a node that has ended."""
+    from std_msgs.msg import Float64
+
+    made = network.publisher(Float64, "/x")
+
+    def is_heard() -> bool:
+        made.publish(Float64(data=FIRST))
+        return len(node.changes) >= 2
+
+    network.wait_until(is_heard, "first verdicts")
+    return made
 
 
 def test_two_properties_that_are_violated_together_have_a_file_each_with_what_came_around(
@@ -53,10 +72,11 @@ def test_two_properties_that_are_violated_together_have_a_file_each_with_what_ca
 ) -> None:
     from std_msgs.msg import Float64, String
 
-    sending, noting = network.publisher(Float64, "/x"), network.publisher(String, "/notes")
+    noting = network.publisher(String, "/notes")
     topics = "[/x, /notes]"
     with Node(script, tmp_path, cut=tmp_path / "cut", cut_topics=topics, cut_before=60.0, cut_after=0.5) as node:
-        network.matched([sending, noting])
+        sending = publisher(network, node)
+        network.matched([noting])
         for number in (1.0, 2.0, 9.0, 3.0):
             noting.publish(String(data=f"before {number}"))
             sending.publish(Float64(data=number))
@@ -75,17 +95,16 @@ def test_two_properties_that_are_violated_together_have_a_file_each_with_what_ca
 def test_a_window_has_every_message_that_was_judged_in_it(script: Path, network: Network, tmp_path: Path) -> None:
     from std_msgs.msg import Float64
 
-    sending = network.publisher(Float64, "/x")
     record, cut = tmp_path / "drive.jsonl", tmp_path / "cut"
     with Node(script, tmp_path, cut=cut, cut_before=60.0, cut_after=1.0, record=record) as node:
-        network.matched([sending])
+        sending = publisher(network, node)
         began, count = time.monotonic(), 6000
         for number in range(count):
             sending.publish(Float64(data=9.0 if number == 3000 else number / 1e4))
             time.sleep(max(0.0, began + (number + 1) / 2000 - time.monotonic()))
         network.wait_until(lambda: len(list(cut.glob("*.mcap"))) == 2, "extracts")
         node.end()
-    judged = [each["x"] for each in map(json.loads, record.read_text().splitlines()) if "x" in each]
+    judged = [each["x"] for each in map(json.loads, record.read_text().splitlines()) if each.get("x", FIRST) != FIRST]
     for path in cut.iterdir():
         numbers = numbers_in(path)
         assert numbers == judged[: len(numbers)]
@@ -95,9 +114,8 @@ def test_a_window_has_every_message_that_was_judged_in_it(script: Path, network:
 def test_what_the_bound_in_bytes_cuts_off_is_reported(script: Path, network: Network, tmp_path: Path) -> None:
     from std_msgs.msg import Float64
 
-    sending = network.publisher(Float64, "/x")
     with Node(script, tmp_path, cut=tmp_path / "cut", cut_before=60.0, cut_after=0.1, cut_mb=0.01) as node:
-        network.matched([sending])
+        sending = publisher(network, node)
         for number in range(101):
             sending.publish(Float64(data=9.0 if number == 100 else number / 100))
         network.wait_until(lambda: len(list((tmp_path / "cut").glob("*.mcap"))) == 2, "extracts")
@@ -113,10 +131,9 @@ def test_a_run_that_ends_before_the_window_does_is_written_up_to_its_end(
 ) -> None:
     from std_msgs.msg import Float64
 
-    sending = network.publisher(Float64, "/x")
     (tmp_path / "cut").mkdir()
     with Node(script, tmp_path, cut=tmp_path / "cut", cut_after=3600.0, on_violation="end") as node:
-        network.matched([sending])
+        sending = publisher(network, node)
         sending.publish(Float64(data=9.0))
         assert node.exit_code() == 1
     assert [numbers_in(path) for path in (tmp_path / "cut").iterdir()] == [[9.0], [9.0]]
@@ -153,11 +170,8 @@ def test_a_recorder_is_asked_for_a_snapshot(
         return response
 
     service = network.node.create_service(ChangeState, "/recorder/snapshot", take)
-    sending = network.publisher(Float64, "/x")
     with Node(script, tmp_path, snapshot="/recorder/snapshot") as node:
-        network.matched([sending])
-        sending.publish(Float64(data=1.0))
-        network.wait_until(lambda: len(node.changes) == 2, "first verdicts")
+        sending = publisher(network, node)
         network.wait_until(lambda: network.node.count_clients("/recorder/snapshot"), "a client")
         sending.publish(Float64(data=9.0))
         network.wait_until(lambda: told in node.log, "the answer")
@@ -178,14 +192,9 @@ def test_a_snapshot_that_nobody_takes_is_reported(
     (package / "__init__.py").write_text("")
     (package / "srv.py").write_text(STAND_IN)
     monkeypatch.setenv("PYTHONPATH", str(tmp_path))
-    sending = network.publisher(Float64, "/x")
     with Node(script, tmp_path, snapshot="/nobody/snapshot") as node:
-
-        def is_told() -> bool:
-            sending.publish(Float64(data=9.0))
-            return "nobody offers this service" in node.log
-
-        network.wait_until(is_told, "the error")
+        publisher(network, node).publish(Float64(data=9.0))
+        network.wait_until(lambda: "nobody offers this service" in node.log, "the error")
         node.end()
 
 
