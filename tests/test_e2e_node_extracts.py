@@ -139,6 +139,22 @@ def test_a_run_that_ends_before_the_window_does_is_written_up_to_its_end(
     assert [numbers_in(path) for path in (tmp_path / "cut").iterdir()] == [[9.0], [9.0]]
 
 
+def test_an_extract_that_cannot_be_written_is_reported_and_the_run_goes_on(
+    script: Path, network: Network, tmp_path: Path
+) -> None:
+    from std_msgs.msg import Float64
+
+    cut = tmp_path / "cut"
+    with Node(script, tmp_path, cut=cut, cut_after=0.1) as node:
+        sending = publisher(network, node)
+        cut.write_text("a file in the place of the folder")
+        sending.publish(Float64(data=4.5))
+        network.wait_until(lambda: "the extract of also cannot be written" in node.log, "the error")
+        sending.publish(Float64(data=9.0))
+        network.wait_until(lambda: ("low", "violated") in node.changes, "a verdict")
+        assert node.end() == 1
+
+
 def test_a_folder_that_cannot_be_one_is_refused(script: Path, tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     for value, told in (("file/cut", "is not a folder"), ("5", "it must be a name")):

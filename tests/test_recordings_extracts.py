@@ -200,6 +200,20 @@ def test_a_damaged_chunk_is_reported(tmp_path: Path) -> None:
         copy_parts(copier, sent)
 
 
+def test_an_index_that_is_not_that_of_its_channel_is_reported(tmp_path: Path) -> None:
+    sent = many(random.Random(6), 200)
+    bag = mcap(tmp_path / "a.mcap", sent)
+    with bag.open("rb") as file:
+        summary = make_reader(file).get_summary()
+    assert summary is not None
+    place = next(iter(summary.chunk_indexes[1].message_index_offsets.values()))
+    content = bytearray(bag.read_bytes())
+    content[place + 9] = 77
+    bag.write_bytes(content)
+    with Copier(bag) as copier, pytest.raises(RecordingError, match="the index of the chunk at byte"):
+        copier.copy(BEGAN, BEGAN + 500 * SECOND, io.BytesIO())
+
+
 def copy_parts(copier: Copier, sent: Sequence[Sent]) -> None:
     for first, last in pairwise(range(0, len(sent), 10)):
         copier.copy(sent[first].time, sent[last].time, io.BytesIO())

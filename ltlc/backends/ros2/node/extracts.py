@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import os
 from collections import Counter, deque
-from collections.abc import Mapping, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -62,6 +62,7 @@ class Extracts:
 
     OVERHEAD = 300
     """How many bytes a message takes beside its data, about."""
+    PATIENCE = 0.1
 
     def __init__(
         self,
@@ -118,12 +119,15 @@ class Extracts:
         since, until = max(0, time - self._cut.before), time + self._cut.after
         self._windows.append(ExtractWindow(label, time, since, until))
 
-    def look(self) -> None:
-        """Hear topics that are published by now; write what is complete."""
+    def look(self, is_due: bool) -> None:
+        """Hear topics that are published by now; write what is complete.
+
+        If it `is_due`, see whether publishers are others, which takes a while.
+        """
         for name in list(self._missing):
             self._find(name)
         for name, listener in self._listeners.items():
-            if isinstance(listener, Keeper):
+            if isinstance(listener, Keeper) and (is_due or not self._heard[name]):
                 listener.fit(self._heard[name])
         now = self._clock.surely()
         for window in [each for each in self._windows if each.until < now]:
@@ -155,11 +159,13 @@ class Extracts:
         self._messages.clear()
         self._size = self._dropped = 0
 
-    def close(self) -> None:
-        """Wait until all is written."""
-        self._writer.shutdown()
+    def close(self, beat: Callable[[], None]) -> None:
+        """Wait until all is written, and show all the time that the node lives."""
         while self._written:
-            self._tell(*self._written.popleft())
+            label, written = self._written.popleft()
+            while not wait([written], self.PATIENCE).done:
+                beat()
+            self._tell(label, written)
 
     def _write(self, window: ExtractWindow) -> None:
         """Have a window written."""
@@ -185,7 +191,7 @@ class Extracts:
     def _tell(self, label: str, written: Future[str]) -> None:
         try:
             self._node.get_logger().info(f"extract of {label}: {written.result()}")
-        except OSError as error:
+        except Exception as error:  # noqa: BLE001  the monitor goes on
             self.have_failed = True
             text = f"the extract of {label} cannot be written: {error}"
             self._node.get_logger().error(text)

@@ -273,7 +273,7 @@ class Watch:
                 listener.fit(heard)
                 self._note_misfit(listener)
         if self._extracts:
-            self._extracts.look()
+            self._extracts.look(is_due)
         if is_due:
             self._next_diagnosis = start + self.DIAGNOSIS
             self._outlets.save()
@@ -363,7 +363,7 @@ class Watch:
         """The last run ends; tell its verdicts. Returns the exit code of the node."""
         self._end_run()
         if self._extracts:
-            self._extracts.close()
+            self._extracts.close(self._pulse.beat)
         code = self._exit_code()
         self._pulse.finish(code)
         self._diagnose()
