@@ -200,6 +200,20 @@ def test_a_damaged_chunk_is_reported(tmp_path: Path) -> None:
         copy_parts(copier, sent)
 
 
+def test_an_index_that_is_not_that_of_its_channel_is_reported(tmp_path: Path) -> None:
+    sent = many(random.Random(6), 200)
+    bag = mcap(tmp_path / "a.mcap", sent)
+    with bag.open("rb") as file:
+        summary = make_reader(file).get_summary()
+    assert summary is not None
+    place = next(iter(summary.chunk_indexes[1].message_index_offsets.values()))
+    content = bytearray(bag.read_bytes())
+    content[place + 9] = 77
+    bag.write_bytes(content)
+    with Copier(bag) as copier, pytest.raises(RecordingError, match="the index of the chunk at byte"):
+        copier.copy(BEGAN, BEGAN + 500 * SECOND, io.BytesIO())
+
+
 def copy_parts(copier: Copier, sent: Sequence[Sent]) -> None:
     for first, last in pairwise(range(0, len(sent), 10)):
         copier.copy(sent[first].time, sent[last].time, io.BytesIO())
@@ -237,12 +251,23 @@ def test_violations_of_one_property_whose_parts_overlap_share_a_file(
     assert len(list(Path("cut").iterdir())) == 4
 
 
-def test_an_extract_goes_back_to_when_the_episode_opened(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_an_extract_goes_back_to_when_something_began_to_be_owed(
+    here: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     (here / "p.ltlc").write_text(f"{HEAD}answer: after speed > 2, eventually x > 5 within 20 s\n")
     mcap(here / "a.mcap", drive(range(60), fast=[10]))
     ran(capsys, "p.ltlc", "a.mcap", "--cut", "cut")
     found = by_mcap(here / "cut/answer+30s.mcap")
     assert (found[0].time - BEGAN, found[-1].time - BEGAN) == (5 * SECOND, 32 * SECOND + 1)
+
+
+def test_an_episode_that_opened_before_the_extract_is_mentioned(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (here / "p.ltlc").write_text(f"{HEAD}calm: after speed > 2, never x > 5\nnow: never x > 5\n")
+    sent = [*drive(range(40), fast=[10]), odometry(BEGAN + 40 * SECOND, pose__pose__position__x=6.0)]
+    mcap(here / "a.mcap", sent)
+    _, told = ran(capsys, "p.ltlc", "a.mcap", "--cut", "cut")
+    assert "calm at +40 s, in an episode that opened before it, at +10 s, 11 messages\n" in told
+    assert "now at +40 s, 11 messages\n" in told
 
 
 @pytest.mark.parametrize(

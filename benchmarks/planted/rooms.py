@@ -44,7 +44,7 @@ ROOMS = {
     "program": "test_program_*.py",
     "inputs/recordings": "test_recordings*.py test_bag*.py test_tables*.py test_one_drive_*.py test_damage.py",
     "base/render": "test_render*.py",
-    "runtime": "test_runtime_*.py test_recordings.py test_openings.py test_each*.py test_explained.py",
+    "runtime": "test_runtime_*.py test_recordings*.py test_openings.py test_each*.py test_explained.py",
     "semantics": "test_semantics_*.py test_diagrams.py test_runtime_episodes.py test_openings.py",
     "interfaces/serve": "test_serve.py test_serve_browser.py",
     "specification": "test_specification_*.py test_requirements.py test_language_signals.py test_language_margins.py "

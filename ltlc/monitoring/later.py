@@ -38,11 +38,12 @@ MOST = 1000
 class Violation:
     """A property is violated at a moment, and `until` then; None if it still was when the run ended.
 
-    It goes back to the time `cause`, when its episode opened, or from when on something was owed.
+    What was owed then was owed from the time `owed` on, which is that moment if nothing was; its episode had `opened`.
     """
 
     moment: Moment
-    cause: Nanoseconds
+    owed: Nanoseconds
+    opened: Nanoseconds
     until: Nanoseconds | None = None
 
     def lasted(self, end: Nanoseconds) -> Nanoseconds:
@@ -193,9 +194,9 @@ class Later(Course):
 
 def violation_at(failure: Failure) -> Violation:
     """The violation that a property, or a slice of it, was decided by."""
-    causes = (failure, *failure.opened, *filter(None, (failure.open_since,)))
     moment = Moment(failure.step, failure.time, by_time=failure.by_time)
-    return Violation(moment, min(cause.time for cause in causes))
+    owed = failure.time if failure.open_since is None else failure.open_since.time
+    return Violation(moment, owed, min((each.time for each in failure.opened), default=owed))
 
 
 class JudgedTrack(RecordedTrack):

@@ -8,7 +8,7 @@ from typing import BinaryIO, NamedTuple
 from zlib import crc32
 
 MAGIC = b"\x89MCAP0\r\n"
-HEADER, FOOTER, SCHEMA, CHANNEL, MESSAGE, CHUNK = range(1, 7)
+FILE_HEADER, FOOTER, SCHEMA, CHANNEL, MESSAGE, CHUNK = range(1, 7)
 MESSAGE_INDEX, CHUNK_INDEX, STATISTICS, DATA_END = 7, 8, 11, 15
 
 HEAD = struct.Struct("<BQ")
@@ -80,7 +80,9 @@ class McapFile:
         self._span = (1 << 64, 0)
         self._clear()
         file.write(MAGIC)
-        file.write(record(HEADER, sized(profile.encode()), sized(library.encode())))
+        file.write(
+            record(FILE_HEADER, sized(profile.encode()), sized(library.encode()))
+        )
 
     def _clear(self) -> None:
         """Nothing is in the chunk that is being made."""

@@ -34,7 +34,7 @@ def add_cut(group: argparse._ArgumentGroup) -> None:
         type=arguments.duration,
         default="5s",
         metavar="TIME",
-        help="begin so long before the violation, or before its episode or obligation (default: 5s)",
+        help="begin so long before the violation, or before what was owed began (default: 5s)",
     )
     group.add_argument(
         "--after",

@@ -29,9 +29,9 @@ class Extract:
 
 
 def extracts(session: Session, before: Nanoseconds, after: Nanoseconds) -> Iterator[Extract]:
-    """What to extract of a recording: each violation with its cause, from so long `before` that to so long `after`.
+    """What to extract of a recording: each violation, from so long `before` it to so long `after`.
 
-    The cause is when the episode opened, or since when something was owed. Parts of one property that overlap are one.
+    If something was owed, from so long before it was. Parts of one property that overlap are one.
     """
     scale = Scale(session.beginning)
     names = topic_names([track.property.label for track in session.tracks])
@@ -45,12 +45,15 @@ def extracts(session: Session, before: Nanoseconds, after: Nanoseconds) -> Itera
             text = f"{track.property.label} at {when}"
             if len(part) > 1:
                 text += f" and {len(part) - 1} more up to {of_property.text(last)}"
+            since = min(each.owed for each in part) - before
+            if part[0].opened < since:
+                text += f", in an episode that opened before it, at {of_property.text(part[0].opened)}"
             if part is parts[-1] and len(found) >= MOST:
                 text += f" (violations after the first {MOST} are not looked for)"
             yield Extract(
                 f"{name}{when.replace(' ', '')}.mcap",
                 text,
-                min(each.cause for each in part) - before,
+                since,
                 last,
                 last + after,
             )
@@ -61,7 +64,7 @@ def _joined(violations: Iterable[Violation], before: Nanoseconds, after: Nanosec
     joined: list[list[Violation]] = []
     for each in sorted(violations, key=lambda violation: violation.moment.time):
         together = [each]
-        while joined and min(v.cause for v in together) - before <= joined[-1][-1].moment.time + after:
+        while joined and min(v.owed for v in together) - before <= joined[-1][-1].moment.time + after:
             together = joined.pop() + together
         joined.append(together)
     return joined

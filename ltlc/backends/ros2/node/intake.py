@@ -108,6 +108,7 @@ class Listener:
         """
         self.topic = topic
         self.own: deque[bytes] = deque()
+        self.keep: Callable[[int, Any, bytes], None] | None = None
         self.foreign: list[str] = []
         self._node = node
         self._receive = receive
@@ -140,6 +141,8 @@ class Listener:
         for missing in self._losses.before(number, received, taken):
             self._lose(self.topic.name, missing)
         self._latest = min(max(received or self._unstamped(), self._latest), taken)
+        if self.keep is not None:
+            self.keep(self._latest, info, message)
         self._receive(self._latest, self.topic.name, self._values(message))
 
     def _values(self, message: bytes) -> Sequence[Value] | None:
@@ -166,7 +169,7 @@ class Listener:
 
     def _publishers(self) -> frozenset[str]:
         """The identities of the publishers that there are now, but for its own."""
-        return frozenset(str(each.endpoint_gid) for each in self._others())
+        return frozenset(str(each.endpoint_gid) for each in self.others())
 
     @property
     def full_name(self) -> str:
@@ -197,7 +200,7 @@ class Listener:
 
     def fit(self, heard: int) -> None:
         """Adapt to the publishers that there are now; `heard` messages came so far."""
-        publishers = self._others()
+        publishers = self.others()
         self._is_published = bool(publishers) or not heard
         types = {publisher.topic_type for publisher in publishers}
         self.foreign = sorted(types - {self.topic.message})
@@ -216,7 +219,7 @@ class Listener:
             self._reliability, self._durability = reliability, durability
             self.renew()
 
-    def _others(self) -> list[Any]:
+    def others(self) -> list[Any]:
         """The publishers on the topic that there are now, but for the node's own."""
         own = (self._node.get_name(), self._node.get_namespace())
         publishers = self._node.get_publishers_info_by_topic(self.full_name)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import difflib
 import math
 import os
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -14,7 +15,21 @@ from rclpy.node import Node
 
 from ltlc.backends.ros2.node.files import UnusableError
 from ltlc.runtime.session import Plan
-from ltlc.runtime.times import seconds
+from ltlc.runtime.times import duration, seconds
+
+
+@dataclass(frozen=True, slots=True)
+class CutOptions:
+    """What is written of each violation: topics, if named, and times around it in ns.
+
+    What is kept for that takes at most so many bytes.
+    """
+
+    folder: Path
+    topics: tuple[str, ...]
+    before: int
+    after: int
+    most: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,6 +42,8 @@ class Options:
     jsonl: Path | None
     junit: Path | None
     record: Path | None
+    cut: CutOptions | None
+    snapshot: str
 
 
 DESCRIPTIONS = {
@@ -36,6 +53,12 @@ DESCRIPTIONS = {
     "jsonl": "a file to append changes of verdict to, one JSON object per line",
     "junit": "a file to write the final verdicts to, as JUnit XML",
     "record": "a file to record the judged messages in, for `ltlc run`",
+    "cut": "a folder to write what came around each violation to, as MCAP",
+    "cut_topics": "the topics to write; none: those that the properties read",
+    "cut_before": "how many seconds before the violation to write",
+    "cut_after": "how many seconds after the violation to write",
+    "cut_mb": "how many megabytes of messages to keep in memory for that",
+    "snapshot": "a service of rosbag2 to call at each violation",
 }
 """The parameters; all are read when the node starts, and only then."""
 
@@ -46,13 +69,19 @@ STANDARD = {"use_sim_time", "start_type_description_service"}
 def read_options(node: Node, plan: Plan) -> Options:
     """The parameters of `node`; what is not given is as the property file says."""
     _refuse_unknown(node)
-    defaults: dict[str, float | str] = {
+    defaults: dict[str, float | str | list[str]] = {
         "rate": plan.rate or 0.0,
         "timeout": seconds(plan.timeout or 0),
         "on_violation": "continue",
         "jsonl": "",
         "junit": "",
         "record": "",
+        "cut": "",
+        "cut_topics": [""],
+        "cut_before": 5.0,
+        "cut_after": 2.0,
+        "cut_mb": 100.0,
+        "snapshot": "",
     }
     values = {n: _declared(node, n, default) for n, default in defaults.items()}
     if values["on_violation"] not in ("continue", "end"):
@@ -67,7 +96,24 @@ def read_options(node: Node, plan: Plan) -> Options:
         jsonl=_path("jsonl", values["jsonl"]),
         junit=_path("junit", values["junit"]),
         record=_path("record", values["record"]),
+        cut=_cut(values),
+        snapshot=_name_in("snapshot", values["snapshot"]),
     )
+
+
+def _cut(values: Mapping[str, Any]) -> CutOptions | None:
+    before, after, megabytes = (
+        _number(name, values[name]) or 0.0
+        for name in ("cut_before", "cut_after", "cut_mb")
+    )
+    topics = values["cut_topics"]
+    given = topics if isinstance(topics, list) else [topics]
+    names = tuple(_name_in("cut_topics", name) for name in given if name != "")
+    folder = _folder("cut", values["cut"])
+    if folder is None:
+        return None
+    most = int(megabytes * 1e6)
+    return CutOptions(folder, names, duration(before), duration(after), most)
 
 
 def _refuse_unknown(node: Node) -> None:
@@ -88,7 +134,7 @@ def _refuse_unknown(node: Node) -> None:
         raise UnusableError(f"use_sim_time is {value!r}: it must be true or false")
 
 
-def _declared(node: Node, name: str, default: float | str) -> Any:
+def _declared(node: Node, name: str, default: float | str | list[str]) -> Any:
     """The value of a parameter, which nobody can change from now on."""
     descriptor = ParameterDescriptor(
         description=DESCRIPTIONS[name], read_only=True, dynamic_typing=True
@@ -107,6 +153,26 @@ def _number(name: str, value: Any) -> float | None:
             f"{name} is {value!r}: it must be a number that is not negative"
         )
     return float(value) or None
+
+
+def _name_in(name: str, value: Any) -> str:
+    """A name, or nothing."""
+    if not isinstance(value, str):
+        raise UnusableError(f"{name} is {value!r}: it must be a name")
+    return value
+
+
+def _folder(name: str, value: Any) -> Path | None:
+    """A folder that files can be written to, once it is made; None for none."""
+    if not _name_in(name, value):
+        return None
+    path = Path(value).expanduser().absolute()
+    there = next(each for each in (path, *path.parents) if each.exists())
+    if not there.is_dir():
+        raise UnusableError(f"{name} is {value!r}: {there} is not a folder")
+    if not os.access(there, os.W_OK):
+        raise UnusableError(f"{name} is {value!r}: {there} is not writable")
+    return path
 
 
 def _path(name: str, value: Any) -> Path | None:

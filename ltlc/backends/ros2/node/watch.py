@@ -11,11 +11,13 @@ from rclpy.node import Node
 
 from ltlc.backends.ros2.node.clock import RosTime
 from ltlc.backends.ros2.node.diagnosis import Diagnosis
+from ltlc.backends.ros2.node.extracts import Extracts
 from ltlc.backends.ros2.node.guard import UNUSABLE, Pulse
 from ltlc.backends.ros2.node.intake import Listener
 from ltlc.backends.ros2.node.locks import Locks
 from ltlc.backends.ros2.node.options import Options
 from ltlc.backends.ros2.node.outlets import Outlets
+from ltlc.backends.ros2.node.snapshot import Snapshot
 from ltlc.backends.ros2.node.topics import Topic
 from ltlc.runtime.properties import Change
 from ltlc.runtime.reports import counted, exit_code, figure, sentence, summary
@@ -81,6 +83,8 @@ class Watch:
         self._outlets = Outlets(node, options)
         self._diagnosis = Diagnosis(node)
         self._locks = Locks(node, [each.label for each in plan.properties])
+        service = options.snapshot
+        self._snapshot = Snapshot(node, service) if service else None
         self._listeners = [
             Listener(node, topic, self._receive, self._lose) for topic in topics
         ]
@@ -88,6 +92,11 @@ class Watch:
             if listener.full_name == self._diagnosis.full_name:
                 listener.own = self._diagnosis.echo()
         self.most_waiting = Listener.DEPTH * len(topics)
+        labels = [each.label for each in plan.properties]
+        cut = options.cut
+        self._extracts = (
+            Extracts(node, cut, self._clock, labels, self._listeners) if cut else None
+        )
         self._is_incomplete = self._has_failed = False
         self._began = time.monotonic()
         self._discovered = self._began + self.DISCOVERY
@@ -230,6 +239,10 @@ class Watch:
                 self._notice_delay(track, change.moment.time)
             if change.current is Verdict.VIOLATED:
                 self._locks.show(self._session)
+                if self._extracts:
+                    self._extracts.violated(track.property.label, change.moment.time)
+                if self._snapshot:
+                    self._snapshot.violated(track.property.label)
                 if track.slices is None:
                     self._node.get_logger().error(figure(self._session, track).rstrip())
                 self.has_ended |= self._ends_on_violation
@@ -259,6 +272,8 @@ class Watch:
             if is_due or not heard:
                 listener.fit(heard)
                 self._note_misfit(listener)
+        if self._extracts:
+            self._extracts.look(is_due)
         if is_due:
             self._next_diagnosis = start + self.DIAGNOSIS
             self._outlets.save()
@@ -320,6 +335,8 @@ class Watch:
 
     def _end_run(self) -> None:
         self._tell_ids()
+        if self._extracts:
+            self._extracts.end_run()
         self._verdicts += [track.verdict for track in self._session.tracks]
         self._is_incomplete |= self._session.is_incomplete
         self._outlets.end(self._session)
@@ -345,6 +362,8 @@ class Watch:
     def end(self) -> int:
         """The last run ends; tell its verdicts. Returns the exit code of the node."""
         self._end_run()
+        if self._extracts:
+            self._extracts.close(self._pulse.beat)
         code = self._exit_code()
         self._pulse.finish(code)
         self._diagnose()
@@ -353,6 +372,8 @@ class Watch:
 
     def _exit_code(self) -> int:
         is_violated = Verdict.VIOLATED in self._verdicts
-        if not is_violated and (self._has_failed or self._outlets.have_failed):
+        reporters = (self._outlets, self._extracts, self._snapshot)
+        have_failed = any(each and each.have_failed for each in reporters)
+        if not is_violated and (self._has_failed or have_failed):
             return UNUSABLE
         return exit_code(self._verdicts, self._is_incomplete)

@@ -15,8 +15,8 @@ from ltlc.runtime.mcap import (
     CHUNK_HEAD,
     DATA_END,
     ENOUGH_FOR_A_CHUNK,
+    FILE_HEADER,
     HEAD,
-    HEADER,
     MAGIC,
     MESSAGE,
     MESSAGE_HEAD,
@@ -78,7 +78,7 @@ def _profile(file: BufferedReader) -> str:
     """How the file says it is to be read: `ros2`."""
     head = file.read(len(MAGIC) + HEAD.size + 4)
     opcode, _ = HEAD.unpack_from(head, len(MAGIC))
-    return file.read(int.from_bytes(head[-4:], "little")).decode() if opcode == HEADER else ""
+    return file.read(int.from_bytes(head[-4:], "little")).decode() if opcode == FILE_HEADER else ""
 
 
 def _indexed(chunk: ChunkIndex) -> Piece:
