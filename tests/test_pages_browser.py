@@ -245,6 +245,7 @@ def test_the_age_of_a_message_is_told_and_drawn_with_its_limit(browser: chromium
     (tmp_path / "run.csv").write_text("time,v,w\n0,,1\n0.25,1,\n0.5,,1\n1.25,2,\n2,,2\n")
     arguments = [str(tmp_path / "run.csv"), "--report", str(tmp_path / "out.html")]
     assert main(["run", str(tmp_path / "props.txt"), *arguments]) == 1
+    browser.complaints()
     browser.open(tmp_path / "out.html")
     told = [browser.run(f"return timelines[0].told({time}e9)").split(" · ")[-1] for time in (0.125, 0.25, 1.25, 1.75)]
     assert told == ["age(v): 0.125 s", "age(v): 0 s", "age(v): 0 s", "age(v): 0.5 s"]
