@@ -238,6 +238,24 @@ def test_the_picture_of_a_monitor_fits_its_column(browser: chromium.Browser, pag
     assert browser.run(wide) == 0
 
 
+def test_the_age_of_a_message_is_told_and_drawn_with_its_limit(browser: chromium.Browser, tmp_path: Path) -> None:
+    (tmp_path / "props.txt").write_text(
+        "decl v /v Float64.data\ndecl w /w Float64.data\nalways (age(v) <= 0.5 s or w > 9)\n"
+    )
+    (tmp_path / "run.csv").write_text("time,v,w\n0,,1\n0.25,1,\n0.5,,1\n1.25,2,\n2,,2\n")
+    arguments = [str(tmp_path / "run.csv"), "--report", str(tmp_path / "out.html")]
+    assert main(["run", str(tmp_path / "props.txt"), *arguments]) == 1
+    browser.complaints()
+    browser.open(tmp_path / "out.html")
+    told = [browser.run(f"return timelines[0].told({time}e9)").split(" · ")[-1] for time in (0.125, 0.25, 1.25, 1.75)]
+    assert told == ["age(v): 0.125 s", "age(v): 0 s", "age(v): 0 s", "age(v): 0.5 s"]
+    least, most = browser.run("return timelines[0].content.panels[1].range")
+    assert least < 0
+    assert most > 1
+    assert browser.run("return timelines[0].content.panels[1].limits[0].value") == 0.5
+    assert browser.complaints() == []
+
+
 def test_nothing_is_fetched(browser: chromium.Browser, page: Path) -> None:
     browser.open(page)
     assert browser.run("return performance.getEntriesByType('resource').map(each => each.name)") == []

@@ -87,3 +87,10 @@ def test_of_a_value_at_an_opening_it_is_said_that_it_is_not_drawn() -> None:
     found = drawn("after near, always v < @{v, opening} + 1")
     assert [panel.title for panel in found] == ["near", "v"]
     assert "its value at the opening is not drawn" in found[1].remarks[0]
+
+
+def test_an_age_is_drawn_with_its_limit_instead_of_the_messages_that_it_counts_from() -> None:
+    news, aged = drawn("after new v, always age(v) < 1.5 s")
+    assert (news.title, news.kind) == ("new v", Drawing.NEWS)
+    assert (aged.title, aged.kind) == ("age(v)", Drawing.AGE)
+    assert [(limit.text, limit.value) for limit in aged.limits] == [("age(v) < 1.5 s", 1.499999999)]

@@ -175,3 +175,18 @@ def test_a_slope_is_drawn_as_the_runtime_computes_it() -> None:
     times, slopes = collector.series[Slope(signal)].samples()
     assert times.tolist() == [ns(1), ns(1.5), ns(2)]
     assert slopes.tolist() == [2.0, 1.0, -2.0]
+
+
+@pytest.mark.parametrize("size", [1, 3, 100])
+def test_of_messages_the_time_since_the_one_before_is_drawn(tmp_path: Path, size: int) -> None:
+    compiled, specification = from_text("decl v /v Float64.data\ndecl w /w Float64.data\nalways age(v) <= 0.5 s\n")
+    (panel,) = panels(compiled[0].specification, specification.source)
+    collector = Collector({panel.expression: ()}, 1000)
+    rows = ["time,v,w", "0,,1", "0.25,1,", "0.5,,1", "1.25,2,", "1.25,2,"]
+    (tmp_path / "run.csv").write_text("".join(f"{row}\n" for row in rows))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(blocks, "ROWS", size)
+        Judge(compiled, specification).judge(tmp_path / "run.csv", [collector.take])
+    times, gaps = collector.series[panel.expression].samples()
+    assert times.tolist() == [ns(0.25), ns(1.25), ns(1.25)]
+    assert np.array_equal(gaps, [math.nan, 1.0, 0.0], equal_nan=True)

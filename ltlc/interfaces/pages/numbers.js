@@ -7,7 +7,7 @@ const VERDICTS = ["not_started", "presumably_satisfied", "presumably_violated", 
 const NAMES = ["page", "surface", "text", "quiet", "line", "link", "signal", "bound", "limit", "episode",
   "episode-area", "owed", "owed-area", ...VERDICTS, ...VERDICTS.map((verdict) => `${verdict}-text`)];
 const FONT = "12px system-ui, -apple-system, 'Segoe UI', Roboto, 'Noto Sans', 'DejaVu Sans', sans-serif";
-const HEIGHTS = { number: 116, boolean: 40, string: 40, news: 26 };
+const HEIGHTS = { number: 116, boolean: 40, string: 40, news: 26, age: 80 };
 const BAND = 24, BAR = 16, HEAD = 19, GAP = 9, AXIS = 26, EDGE = 6;
 const SHORTEST = 20; // ns that a view shows at least
 
@@ -43,6 +43,19 @@ async function readLine(line) {
   let time = 0;
   for (let i = 0; i < gaps.length; i++) line.times[i] = time += gaps[i];
   line.samples = values;
+  return line;
+}
+
+// That of the first message counts from the beginning.
+async function readAge(line) {
+  const { times, samples } = await readLine(line);
+  if (times.length && Number.isNaN(samples[0])) samples[0] = times[0] / 1e9;
+}
+
+// How old the last message is, in s; `line` has those of a topic.
+function age(line, time) {
+  const at = upTo(line.times, time) - 1;
+  return (time - (at < 0 ? 0 : line.times[at])) / 1e9;
 }
 
 // How many of the ascending `times` are at most `time`.

@@ -7,6 +7,9 @@ from dataclasses import dataclass, field
 from enum import Enum
 
 from ltlc.base.source import Source
+from ltlc.runtime.times import seconds
+from ltlc.semantics.properties import predicates
+from ltlc.semantics.timed_atoms import Age, atoms_within
 from ltlc.specification.atoms import Atom
 from ltlc.specification.evaluation import evaluate, number
 from ltlc.specification.expressions import (
@@ -35,6 +38,7 @@ class Drawing(Enum):
     BOOLEAN = "boolean"
     STRING = "string"
     NEWS = "news"
+    AGE = "age"
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,8 +79,9 @@ class Panel:
 
     @property
     def title(self) -> str:
-        """The expression as it is written."""
-        return text(self.expression)
+        """The expression as it is written; of an age, the `expression` is the news that it counts from."""
+        written = text(self.expression)
+        return f"age({written.removeprefix('new ')})" if self.kind is Drawing.AGE else written
 
     @property
     def drawn(self) -> Iterator[Expression]:
@@ -87,16 +92,28 @@ class Panel:
 
 def panels(specification: PropertySpecification, source: Source) -> list[Panel]:
     """The panels of a property in `source`, in the order in which it first speaks of them."""
-    found: dict[Expression, Panel] = {}
-    for atom in specification.atoms:
-        for panel in _panels(atom.condition, _text(specification, source, atom)):
-            known = found.setdefault(panel.expression, panel)
-            if known is not panel:
-                known.limits += panel.limits
-                known.bounds += panel.bounds
-                known.wanted += panel.wanted
-                known.remarks += [remark for remark in panel.remarks if remark not in known.remarks]
+    found: dict[tuple[str, Expression], Panel] = {}
+    for panel in _all(specification, source):
+        known = found.setdefault((panel.title, panel.expression), panel)
+        if known is not panel:
+            known.limits += [limit for limit in panel.limits if limit not in known.limits]
+            known.bounds += panel.bounds
+            known.wanted += panel.wanted
+            known.remarks += [remark for remark in panel.remarks if remark not in known.remarks]
     return list(found.values())
+
+
+def _all(specification: PropertySpecification, source: Source) -> Iterator[Panel]:
+    """The panels of each condition; those of ages stand for the messages that they count from."""
+    counted = specification.messages()
+    for atom in specification.atoms:
+        if atom.name not in counted:
+            yield from _panels(atom.condition, _text(specification, source, atom))
+    for predicate in predicates(specification.property):
+        for each in atoms_within(predicate):
+            if isinstance(each, Age):
+                limit = Limit(each.name, seconds(each.most))
+                yield Panel(specification.arrival(each.news.name), Drawing.AGE, [limit])
 
 
 def _text(specification: PropertySpecification, source: Source, atom: Atom) -> str:

@@ -13,7 +13,7 @@ from ltlc.backends.python.load import load_function
 from ltlc.inputs.recordings.blocks import Block, Ragged, Samples
 from ltlc.runtime.functions import divide
 from ltlc.runtime.sampling import Value
-from ltlc.runtime.times import seconds
+from ltlc.runtime.times import SECOND, seconds
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.specification.evaluation import sample
 from ltlc.specification.expressions import Current, Expression, Field, New, Past, Read, Recent, Signal, Slope, reads
@@ -144,15 +144,28 @@ class Collector:
         self._reach = max(map(_reach, self.series), default=0)
         self._compute: dict[Expression, _Computation] = {}
         self._before: dict[str, _History] = {}
+        self._heard: dict[str, Nanoseconds] = {}
 
     def take(self, block: Block) -> None:
         """Take the next block."""
         reader = _Reader(block, self._compute, self._before)
         for expression, series in self.series.items():
             samples = reader.of(expression)
-            if not isinstance(samples.values, Ragged):
-                series.add(block.times[samples.rows], samples.values)
+            times = block.times[samples.rows]
+            if isinstance(expression, New):
+                series.add(times, self._gaps(expression.signal.name, times))
+            elif not isinstance(samples.values, Ragged):
+                series.add(times, samples.values)
         self._before |= reader.last(self._reach + 1)
+
+    def _gaps(self, name: str, times: Times) -> Numbers:
+        """Of messages, how long before each, in s, the one before it came; NaN of the first."""
+        before = self._heard.get(name)
+        gaps = np.diff(times, prepend=times[:1] if before is None else before) / SECOND
+        if len(times):
+            gaps[0] = math.nan if before is None else gaps[0]
+            self._heard[name] = int(times[-1])
+        return gaps
 
 
 def _reach(expression: Expression) -> int:

@@ -9,6 +9,7 @@ class Signals extends Lanes {
       if (value < low) low = value;
       if (value > high) high = value;
     };
+    if (panel.kind === "age") [0, age(panel.lines[0], Math.min(to, this.content.end))].forEach(take);
     for (const line of panel.lines) {
       const first = Math.max(0, upTo(line.times, from) - 1), end = upTo(line.times, to);
       for (const moved of line.role === "bound" ? [line.shift - line.reach, line.shift + line.reach] : [0]) {
@@ -41,12 +42,13 @@ class Signals extends Lanes {
       pen.strokeStyle = colours[line.role];
       pen.lineWidth = line.role === "bound" ? 1.25 : 1.5;
       pen.setLineDash(line.role === "bound" ? [5, 3] : []);
-      for (const reach of line.reach ? [-line.reach, line.reach] : [0]) {
+      if (panel.kind === "age") this.drawAge(line, y);
+      else for (const reach of line.reach ? [-line.reach, line.reach] : [0]) {
         this.drawLine(line, (value) => y(value + (line.shift || 0) + reach));
       }
       pen.setLineDash([]);
     }
-    this.drawFailure(panel.lines[0], y);
+    this.drawFailure(panel, y);
     pen.textAlign = "left";
     pen.lineWidth = 3;
     for (const { at, label } of marks) {
@@ -72,9 +74,9 @@ class Signals extends Lanes {
   }
 
   // The value on which the property was violated.
-  drawFailure(line, y) {
+  drawFailure({ kind, lines: [line] }, y) {
     const failure = this.failure();
-    const value = failure && held(line, failure.time);
+    const value = failure && (kind === "age" ? age : held)(line, failure.time);
     if (value === undefined || Number.isNaN(value)) return;
     const pen = this.pen;
     pen.beginPath();
@@ -108,6 +110,24 @@ class Signals extends Lanes {
     else this.traceColumns(times, samples, first, end, y);
     pen.stroke();
     if (end - first < this.width / 8) this.drawDots(times, samples, first, end, y);
+  }
+
+  // It grows from each message, or the beginning, to the next one, or the end; the samples are what it has grown to.
+  drawAge({ times, samples }, y) {
+    const pen = this.pen, { from, to } = this.view;
+    const rise = (start, end) => {
+      const [first, last] = [Math.max(start, from), Math.min(end, to)];
+      pen.moveTo(this.x(first), y((first - start) / 1e9));
+      pen.lineTo(this.x(last), y((last - start) / 1e9));
+    };
+    pen.beginPath();
+    for (let i = upTo(times, from), end = Math.min(times.length, upTo(times, to) + 1); i < end; i++) {
+      rise(times[i] - samples[i] * 1e9, times[i]);
+      if (times[i] <= to) pen.lineTo(this.x(times[i]), y(0));
+    }
+    const last = times.length ? times[times.length - 1] : 0;
+    if (last < to) rise(last, this.content.end);
+    pen.stroke();
   }
 
   traceEach(times, samples, first, end, y) {

@@ -33,7 +33,8 @@ class Timeline extends Signals {
     if (this.depths) lanes.push(lane(this.depths * (BAR + 2), this.drawEpisodes, "episodes"));
     if (this.content.deadlines.length) lanes.push(lane(BAR, this.drawDeadlines, "obligation open, and its deadline"));
     for (const panel of this.content.panels) {
-      const draw = { number: this.drawNumbers, boolean: this.drawBoolean, string: this.drawString, news: this.drawNews };
+      const draw = { number: this.drawNumbers, boolean: this.drawBoolean, string: this.drawString, news: this.drawNews,
+        age: this.drawNumbers };
       const made = lane(HEIGHTS[panel.kind], draw[panel.kind], panel.title, this.legend(panel));
       lanes.push(Object.assign(made, { panel }));
     }
@@ -52,7 +53,8 @@ class Timeline extends Signals {
 
   async load() {
     if (!this.loading) {
-      this.loading = Promise.all(this.content.panels.flatMap((panel) => panel.lines.map(readLine)));
+      this.loading = Promise.all(this.content.panels.flatMap(
+        (panel) => panel.lines.map(panel.kind === "age" ? readAge : readLine)));
       await this.loading;
       for (const panel of this.content.panels) panel.range = this.range(panel, -Infinity, Infinity);
       this.isLoaded = true;
@@ -137,6 +139,7 @@ class Timeline extends Signals {
   }
 
   toldValue(panel, time) {
+    if (panel.kind === "age") return `${short(age(panel.lines[0], time))} s`;
     const value = held(panel.lines[0], time);
     if (value === undefined) return "no value yet";
     if (panel.kind === "boolean") return value ? "true" : "false";
