@@ -2,8 +2,8 @@
 
 What changes by itself changes a nanosecond after a bound has passed. So the next letter comes at once, or when a clock
 is about to expire: at the last nanosecond before, at that moment, one after it; or when all clocks have. Of several
-durations each is taken from the last letter as well, whatever the clocks say: so two clocks come to expire one just before
-the other, and a clock that should run and does not is noticed.
+durations each is taken from the last letter as well, whatever the clocks say: so two clocks come to expire one just
+before the other, and a clock that should run and does not is noticed.
 """
 
 from __future__ import annotations
