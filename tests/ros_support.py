@@ -56,6 +56,10 @@ def wait_until(happens: Callable[[], object], what: str, meanwhile: Callable[[],
             meanwhile()
 
 
+PORTS = 60
+"""How many ports of a domain are looked at: that of discovery, and two kinds for each of 25 participants."""
+
+
 @contextmanager
 def own_domain(folder: Path) -> Iterator[None]:
     """A ROS domain that nobody else on this machine uses, for this process and its children."""
@@ -82,10 +86,10 @@ def own_domain(folder: Path) -> Iterator[None]:
 
 @contextmanager
 def _claimed_domain() -> Iterator[int]:
-    """A number whose lock file is ours and whose discovery port nobody listens to."""
+    """A number whose lock file is ours and to whose ports nobody listens: a node may outlive a test that was killed."""
     for domain in range(1, 100):
         with open(Path(tempfile.gettempdir()) / f"ltlc-ros-domain-{domain}", "w") as lock:
-            if _is_locked(lock) and _is_free(7400 + 250 * domain):
+            if _is_locked(lock) and all(_is_free(7400 + 250 * domain + offset) for offset in range(PORTS)):
                 yield domain
                 return
     raise RuntimeError("no ROS domain is free")

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 from bag_support import Sent, made, mcap
+from quick_gate import quick_gate
 
 from ltlc import cli
 from ltlc.assurance.evidence.certified import certificates
@@ -56,7 +57,8 @@ class Made:
         mcap(self.recording, drive)
         output = str(self.properties.with_suffix(".json"))
         to = ["--certificate", str(self.certificates)]
-        assert cli.main(["build", str(self.properties), "--target", "json", "-o", output, *to, "-q"]) == 0
+        with quick_gate():
+            assert cli.main(["build", str(self.properties), "--target", "json", "-o", output, *to, "-q"]) == 0
         self.run()
 
     def run(self) -> None:
