@@ -149,8 +149,9 @@ class Letters:
         if is_over:
             self._flush()
         self.is_settled = until is not None and self._seen > until
-        parts, self._parts = self._parts, []
-        for times, letters in parts:
+        if self._parts:
+            times, letters = (np.concatenate(each) for each in zip(*self._parts, strict=True))
+            self._parts = []
             end = len(times) if until is None else int(times.searchsorted(until, "right"))
             self._write(times[:end].tolist(), letters[:end].tolist())
 
