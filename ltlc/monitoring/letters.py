@@ -7,18 +7,18 @@ if its letter is not the one held, or if its time is that of the last line; `doc
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Container, Iterable, Sequence
+from collections.abc import Callable, Container, Iterable, Sequence
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ltlc.assurance.evidence.document import Line, Summed
+from ltlc.backends.python.load import load_conditions
 from ltlc.runtime.sampling import Value
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.properties import predicates
 from ltlc.semantics.timed_atoms import news_of
-from ltlc.specification.atoms import Atom
-from ltlc.specification.evaluation import letter
 from ltlc.specification.specification import PropertySpecification
 
 MOST_BYTES = 600
@@ -35,9 +35,7 @@ class Letters:
     def __init__(self, of: PropertySpecification, is_at_ticks: bool) -> None:
         atoms = {atom.name: 1 << number for number, atom in enumerate(of.atoms)}
         news = {each.name for part in predicates(of.property) for each in news_of(part)}
-        self._atoms: tuple[Atom, ...] = of.atoms
-        self._inputs = of.inputs()
-        self._bits = atoms
+        self._of = of
         self._news = sum(bit for name, bit in atoms.items() if name in news)
         self._messages = {of.arrival(name).signal.name: atoms[name] for name in of.messages()}
         self._is_at_ticks = is_at_ticks
@@ -57,6 +55,11 @@ class Letters:
         self._written: Nanoseconds | None = None
         self._words: dict[int, str] = {}
 
+    @cached_property
+    def _holds(self) -> Callable[..., Sequence[bool]]:
+        """Which atoms hold where inputs have these values."""
+        return load_conditions((atom.condition for atom in self._of.atoms), self._of.inputs())
+
     def hear(self, time: Nanoseconds, signals: Container[str]) -> None:
         """Messages come from which the ages of these signals count, before they are judged by rows."""
         if self.is_told and not self.is_settled:
@@ -71,9 +74,9 @@ class Letters:
         if values is None:
             self._flush()
             return
-        holds = letter(self._atoms, dict(zip(self._inputs, values, strict=True)))
-        assert holds is not None, "a step at which something is NaN is none"
-        now, messages = sum(self._bits[name] for name in holds), sum(self._messages.values())
+        now, messages = 0, sum(self._messages.values())
+        for number, holds in enumerate(self._holds(*values)):
+            now |= holds << number
         if self._is_at_ticks:
             now &= ~messages
             while self._pending and self._pending[-1][0] == time:
@@ -81,7 +84,7 @@ class Letters:
         elif now & messages:
             self._pending.pop()
         self._flush()
-        self._add(np.array([time]), np.array([now]))
+        self._add_one(time, now)
 
     def take(self, times: NDArray[np.int64], atoms: Iterable[NDArray[np.bool_]]) -> None:
         """Steps at these times are taken by columns, where each of the atoms holds, up to when it is settled next."""
@@ -111,7 +114,13 @@ class Letters:
             if self._last is None:
                 self._heard |= {bit: time for bit in self._messages.values() if bit & bits}
             else:
-                self._add(np.array([time]), np.array([self._last[1] & ~self._news | bits]))
+                self._add_one(time, self._last[1] & ~self._news | bits)
+
+    def _add_one(self, time: Nanoseconds, now: int) -> None:
+        """An instant."""
+        self._seen = time
+        if self._last is None or time == self._last[0] or now != self._last[1] & ~self._news:
+            self._add(np.array([time]), np.array([now]))
 
     def _add(self, times: NDArray[np.int64], letters: NDArray[np.int64]) -> None:
         """Instants at each of which there is a line, but perhaps at the first."""
@@ -140,8 +149,9 @@ class Letters:
         if is_over:
             self._flush()
         self.is_settled = until is not None and self._seen > until
-        parts, self._parts = self._parts, []
-        for times, letters in parts:
+        if self._parts:
+            times, letters = (np.concatenate(each) for each in zip(*self._parts, strict=True))
+            self._parts = []
             end = len(times) if until is None else int(times.searchsorted(until, "right"))
             self._write(times[:end].tolist(), letters[:end].tolist())
 

@@ -275,13 +275,19 @@ def read(path: Path, document: Document) -> Recording:
 
 def open_bag(paths: list[Path], document: Document, stack: ExitStack) -> Any:
     """The bag at some paths; where it defines no messages, they are those of the release that the digests are of."""
-    from rosbags.highlevel import AnyReader  # noqa: TID251
+    from rosbags.highlevel import AnyReader, AnyReaderError  # noqa: TID251
     from rosbags.typesys import Stores, get_typestore  # noqa: TID251
 
-    releases = [store for store in Stores if store.name.startswith("ROS2_")]
-    for release in sorted(releases, key=lambda store: store is not Stores.ROS2_JAZZY):
-        reader = stack.enter_context(AnyReader(paths, default_typestore=get_typestore(release)))
-        wanted = document.head.digests("definition")
+    releases = sorted(Stores, key=lambda store: store is not Stores.ROS2_JAZZY)
+    wanted = document.head.digests("definition")
+    for release in (None, *(each for each in releases if each.name.startswith("ROS2_"))):
+        reader = AnyReader(paths, default_typestore=get_typestore(release) if release else None)
+        try:
+            stack.enter_context(reader)
+        except AnyReaderError:
+            if release is not None:
+                raise
+            continue  # it has no definitions
         if wanted == {name: definition_digest(reader.typestore, name) for name in wanted}:
             return reader
         reader.close()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from types import ModuleType
 from typing import Any
 
@@ -15,21 +15,33 @@ from ltlc.backends.python.monitors import MODULE_NAMES
 from ltlc.backends.python.plan import RUNTIME_NAMES, plan_code
 from ltlc.compiler import Compiled
 from ltlc.program.expressions import Expression as TypedExpression
-from ltlc.program.lowering import lowered, read
+from ltlc.program.lowering import condition, lowered, read
 from ltlc.runtime import functions, properties, sampling, session, slices, times
 from ltlc.runtime.sampling import Value
 from ltlc.runtime.session import Plan
 from ltlc.semantics import verdicts
-from ltlc.specification.expressions import Expression, Read
+from ltlc.specification.expressions import Condition, Expression, Read
 from ltlc.specification.specification import Specification
 
 
 def load_function(expression: Expression, wanted: Sequence[Read]) -> Callable[..., Value]:
     """`expression` as a function of what it reads, which is `wanted`."""
+    function = _loaded([lowered(expression)], wanted)
+    return lambda *values: function(*values)[0]
+
+
+def load_conditions(conditions: Iterable[Condition], wanted: Sequence[Read]) -> Callable[..., Sequence[bool]]:
+    """Whether each of `conditions` holds, as a function of what they read, which is `wanted`."""
+    return _loaded(map(condition, conditions), wanted)
+
+
+def _loaded(expressions: Iterable[TypedExpression], wanted: Sequence[Read]) -> Callable[..., Any]:
+    """The values of `expressions` as a function of what they read."""
     local = Names(RUNTIME_NAMES | MODULE_NAMES)
     names: dict[TypedExpression, str] = {read(each): local.unique(input_name(read(each))) for each in wanted}
-    code = flat(python_speller(names).code(lowered(expression)))
-    function: Callable[..., Value] = eval(f"lambda {', '.join(names.values())}: {code}", _namespace(functions))
+    speller = python_speller(names)
+    code = "".join(f"{flat(speller.code(each))}, " for each in expressions)
+    function: Callable[..., Any] = eval(f"lambda {', '.join(names.values())}: ({code})", _namespace(functions))
     return function
 
 
