@@ -193,7 +193,7 @@ def test_of_two_mends_of_one_place_the_first_is_carried_out() -> None:
 
 
 @given(st.lists(st.tuples(st.integers(0, 12), st.integers(0, 3)), max_size=6))
-def test_mends_apart_are_those_that_touch_no_earlier_one(places: list[tuple[int, int]]) -> None:
+def test_fixes_apart_are_those_that_touch_no_earlier_one(places: list[tuple[int, int]]) -> None:
     fixes = [Fix(str(number), ((Span(at, at + length), "-"),)) for number, (at, length) in enumerate(places)]
     chosen: list[Fix] = []
     for fix in fixes:
