@@ -1,4 +1,4 @@
-"""Several specifications on a command line, folders, the standard input; and mends that `ltlc check` carries out."""
+"""Several specifications on a command line, folders, the standard input; and fixes that `ltlc check` carries out."""
 
 from __future__ import annotations
 

@@ -15,7 +15,7 @@ from language_support import findings, marked
 from published import DECLARED, relation
 from stepping import session
 
-from ltlc.base.mends import mended
+from ltlc.base.fixes import with_fixes
 from ltlc.base.source import Source
 from ltlc.frontend.language import load_text
 from ltlc.frontend.syntax import phrasebook, phrases
@@ -200,7 +200,7 @@ def answer(line: str) -> tuple[str, str]:
     [found] = [each for each in findings(text) if each.code not in ("LTL104", "LTL306")]
     [fix] = found.fixes
     assert (found.code, marked(found)) == ("LTL021", line)
-    return mended(text, [fix]).removeprefix(NAMES).rstrip("\n"), found.help.partition("; note: ")[2]
+    return with_fixes(text, [fix]).removeprefix(NAMES).rstrip("\n"), found.help.partition("; note: ")[2]
 
 
 @pytest.mark.parametrize(("line", "formula", "written"), SAME, ids=[each[0] for each in SAME])

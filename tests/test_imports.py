@@ -20,7 +20,7 @@ ORDER = {
         "base.diagnostics",
         "base.codes",
         "base.nearest",
-        "base.mends",
+        "base.fixes",
         "base.files",
         "base.limits",
         "base.render",

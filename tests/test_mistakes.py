@@ -10,7 +10,7 @@ import pytest
 from bag_support import LEVEL, Sent, made, mcap, odometry
 from language_support import findings
 
-from ltlc.base.mends import mended
+from ltlc.base.fixes import with_fixes
 from ltlc.base.source import Source
 from ltlc.cli import main
 from ltlc.frontend.language import load_text
@@ -172,7 +172,7 @@ def test_the_line_that_was_meant_is_offered_and_has_no_mistake(mistake: Line) ->
     text = f"{NAMES}{mistake.written}\n"
     found = [each for each in findings(text) if each.code not in ALWAYS_SAID]
     assert [each.code for each in found] == [mistake.code]
-    fixed = mended(text, found[0].fixes[:1])
+    fixed = with_fixes(text, found[0].fixes[:1])
     assert fixed.endswith(f"\n{mistake.answer}\n")
     _, diagnostics = load_text(Source("props.txt", fixed))
     assert [each.message for each in diagnostics if each.code not in ALWAYS_SAID] == []

@@ -20,7 +20,7 @@ from ltlc.assurance.exactness import checked_certificate
 from ltlc.assurance.replay import Deviation, Replayed
 from ltlc.automata import Budget
 from ltlc.backends.python import standalone_classes
-from ltlc.base import mends
+from ltlc.base import fixes
 from ltlc.base.diagnostics import Severity
 from ltlc.base.source import Source
 from ltlc.frontend.language import load_text
@@ -234,7 +234,7 @@ def test_behind_implies_both_values_are_named_and_that_of_the_scope_can_be_had(
     assert value in found.message
     assert "any number" not in found.message
     (fix,) = found.fixes
-    assert mends.mended(SIGNALS + text, [fix]) == SIGNALS + mended
+    assert fixes.with_fixes(SIGNALS + text, [fix]) == SIGNALS + mended
     assert not [each for each in findings(SIGNALS + mended) if each.severity is Severity.ERROR]
 
 

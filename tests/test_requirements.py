@@ -16,7 +16,7 @@ from test_editor import offered, said
 
 from ltlc.assurance.reading.outcomes import Difference, ReadBack
 from ltlc.backends import emit
-from ltlc.base.mends import mended
+from ltlc.base.fixes import with_fixes
 from ltlc.base.source import Source
 from ltlc.cli import main
 from ltlc.frontend.layout import layout
@@ -198,8 +198,8 @@ def test_an_id_before_a_colon_is_put_into_attributes() -> None:
     text = "REQ-001: never robot.velocity > 2\n"
     [found] = findings(text)
     [fix] = found.fixes
-    assert mended(text, [fix]) == '[id "REQ-001"]\nnever robot.velocity > 2\n'
-    assert codes_of(mended(text, [fix])) == []
+    assert with_fixes(text, [fix]) == '[id "REQ-001"]\nnever robot.velocity > 2\n'
+    assert codes_of(with_fixes(text, [fix])) == []
 
 
 def test_a_bracket_at_the_beginning_of_a_line_is_an_index_where_a_number_follows() -> None:

@@ -9,10 +9,12 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
+import pyarrow as pa
 import pytest
 import zstandard
 from hypothesis import example, given
 from hypothesis import strategies as st
+from pyarrow import parquet as pq
 from stepping import from_text
 
 from ltlc.inputs.recordings import RecordingError, csv, open_recording, plain, text
@@ -400,6 +402,20 @@ def test_columns_may_be_headed_by_topic_and_field_as_plotjuggler_writes_them(
     assert report.session is not None
     decided = [(t.verdict.value, t.steps) for t in report.session.tracks]
     assert decided == [("violated", 2), ("violated", 1), ("violated", 1), ("violated", 1)]
+    assert report.diagnostics == ()
+
+
+@pytest.mark.parametrize("ending", ["csv", "parquet"])
+def test_fields_in_heads_may_stand_after_dots_as_in_declarations(tmp_path: Path, ending: str) -> None:
+    heads = ["/odom.twist.twist.linear.x", "/scan.ranges.0", "/scan.ranges[1]", "/s.status_list[0].goal_info.stamp.sec"]
+    path = tmp_path / f"run.{ending}"
+    if ending == "csv":
+        path.write_text(f"time,{','.join(heads)}\n0,2,0.25,0.25,1\n")
+    else:
+        pq.write_table(pa.table({"time": [0.0], **dict(zip(heads, ([2.0], [0.25], [0.25], [1]), strict=True))}), path)
+    report = run(*from_text(ODOMETRY), path)
+    assert report.session is not None
+    assert [track.verdict.value for track in report.session.tracks] == ["violated"] * 4
     assert report.diagnostics == ()
 
 

@@ -9,8 +9,8 @@ LOOSE = "loose modules"
 """The room of the modules that are in no folder."""
 
 ROOMS = {
-    LOOSE: "test_commands_*.py test_mends.py test_language_check.py test_pytest_plugin.py test_render.py test_api.py",
-    "base": "test_commands_*.py test_mends.py test_language_check.py test_pytest_plugin.py test_render.py test_api.py "
+    LOOSE: "test_commands_*.py test_fixes.py test_language_check.py test_pytest_plugin.py test_render.py test_api.py",
+    "base": "test_commands_*.py test_fixes.py test_language_check.py test_pytest_plugin.py test_render.py test_api.py "
     "test_libraries.py test_release.py test_provenance.py",
     "analysis": "test_analysis_*.py",
     "interfaces/api": "test_api*.py test_commands_compare.py test_comparison_corpus.py test_comparison_pictures.py",

@@ -1,4 +1,4 @@
-"""Diagnostics for a person: the message, the lines it is about with a mark under the place, and how to mend it."""
+"""Diagnostics for a person: the message, the lines it is about with a mark under the place, and how to fix it."""
 
 from __future__ import annotations
 

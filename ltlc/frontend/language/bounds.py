@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from ltlc.base.diagnostics import Fix, Help, Label
-from ltlc.base.mends import around, put, write, writing
+from ltlc.base.fixes import around, put, write, writing
 from ltlc.base.source import Span
 from ltlc.frontend.language.evaluate import value
 from ltlc.frontend.language.names import Checker

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from ltlc.base.diagnostics import Help, Label
-from ltlc.base.mends import write, writing
+from ltlc.base.fixes import write, writing
 from ltlc.frontend.language.built import Built
 from ltlc.frontend.language.names import Checker
 from ltlc.semantics import ltl

@@ -7,7 +7,7 @@ import re
 from dataclasses import dataclass
 
 from ltlc.base.diagnostics import Diagnostic, Help, Label
-from ltlc.base.mends import respell, writing
+from ltlc.base.fixes import respell, writing
 from ltlc.base.source import Span
 from ltlc.frontend.language.built import Context
 from ltlc.frontend.language.durations import LONGEST, nanoseconds, of_seconds

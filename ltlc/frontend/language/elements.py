@@ -7,7 +7,7 @@ from dataclasses import replace
 from itertools import chain
 
 from ltlc.base.diagnostics import Fix, Help
-from ltlc.base.mends import around
+from ltlc.base.fixes import around
 from ltlc.base.source import Span
 from ltlc.frontend.language.built import Built, Context
 from ltlc.frontend.language.names import Checker

@@ -8,7 +8,7 @@ from dataclasses import replace
 from functools import partial
 
 from ltlc.base.diagnostics import Help, Label
-from ltlc.base.mends import respell, write, writing
+from ltlc.base.fixes import respell, write, writing
 from ltlc.frontend.language.built import Context
 from ltlc.frontend.language.durations import nanoseconds
 from ltlc.frontend.language.elements import counted, holding

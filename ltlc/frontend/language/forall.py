@@ -10,7 +10,7 @@ from math import perm
 from typing import Any
 
 from ltlc.base.diagnostics import Diagnostic, Label
-from ltlc.base.mends import respell
+from ltlc.base.fixes import respell
 from ltlc.base.source import Span
 from ltlc.frontend.language.names import Checker
 from ltlc.frontend.language.primitives import RELATIONS

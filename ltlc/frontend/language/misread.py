@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from ltlc.base.codes import diagnostic
 from ltlc.base.diagnostics import Diagnostic, Fix, Help, Label
-from ltlc.base.mends import around
+from ltlc.base.fixes import around
 from ltlc.base.nearest import Words, slip, words
 from ltlc.base.source import Source, Span
 from ltlc.frontend.language.bounds import is_parenthesised

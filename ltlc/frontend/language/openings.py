@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from ltlc.base.diagnostics import Fix, Help
-from ltlc.base.mends import mended
+from ltlc.base.fixes import with_fixes
 from ltlc.base.source import Span
 from ltlc.frontend.language.bounds import is_parenthesised
 from ltlc.frontend.language.built import Context
@@ -57,7 +57,7 @@ def _either(checker: Checker, scope: str, triggers: Sequence[syntax.Connective])
     edits = tuple(edit for trigger in triggers for edit in _alternatives(checker, trigger))
     if not all(whole.start <= span.start and span.end <= whole.end for span, _ in edits):
         return Help(f"write `not (P) or …` for the value when {scope}; {began}")
-    written = mended(text, [Fix("", edits)])[whole.start : whole.end - len(text) or None]
+    written = with_fixes(text, [Fix("", edits)])[whole.start : whole.end - len(text) or None]
     fix = Fix(f"write `{' '.join(written.split())}`", edits)
     return Help(f"{fix.title} for the value when {scope}; {began}", (fix,))
 

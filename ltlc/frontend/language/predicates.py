@@ -7,7 +7,7 @@ from collections.abc import Callable
 from functools import partial, reduce
 
 from ltlc.base.diagnostics import Fix, Help, Label
-from ltlc.base.mends import put, write, writing
+from ltlc.base.fixes import put, write, writing
 from ltlc.frontend.language import bounds
 from ltlc.frontend.language.built import Built, Context, apply, equivalence, implication, truth
 from ltlc.frontend.language.counts import counted, of_rate

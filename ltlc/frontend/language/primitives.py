@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from ltlc.base.mends import respell
+from ltlc.base.fixes import respell
 from ltlc.frontend.language.names import Checker
 from ltlc.frontend.language.signals import Landmark, Thing, components, distance, named, norm, orientation
 from ltlc.frontend.language.values import Orientation, Scalar, Value, Vector, call, difference

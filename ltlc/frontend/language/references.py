@@ -12,7 +12,7 @@ from dataclasses import replace
 from itertools import takewhile
 
 from ltlc.base.diagnostics import Fix, Help, Label
-from ltlc.base.mends import put, respell, write, writing
+from ltlc.base.fixes import put, respell, write, writing
 from ltlc.base.source import Span
 from ltlc.frontend.language.names import Associated, Checker, Sort
 from ltlc.frontend.language.primitives import ERRORS, MODELLED, PRIMITIVES, QUANTITIES, RELATIONS

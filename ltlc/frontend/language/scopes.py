@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import partial
 
 from ltlc.base.diagnostics import Fix, Help
-from ltlc.base.mends import around, write, writing
+from ltlc.base.fixes import around, write, writing
 from ltlc.base.source import Span
 from ltlc.frontend.language import bounds
 from ltlc.frontend.language.built import Built, Context, apply

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from ltlc.base.codes import diagnostic
 from ltlc.base.diagnostics import Diagnostic, Help
-from ltlc.base.mends import respell, write, writing
+from ltlc.base.fixes import respell, write, writing
 from ltlc.base.nearest import is_slip
 from ltlc.base.source import Source, Span
 from ltlc.frontend.syntax import tree as syntax

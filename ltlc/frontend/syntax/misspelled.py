@@ -6,7 +6,7 @@ import re
 
 from ltlc.base.codes import diagnostic
 from ltlc.base.diagnostics import Diagnostic, Help
-from ltlc.base.mends import write, writing
+from ltlc.base.fixes import write, writing
 from ltlc.base.source import Source, Span
 from ltlc.frontend.syntax.lexer import FOREIGN_PREFIXES, QUANTITIES, Token
 

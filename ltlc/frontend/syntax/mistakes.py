@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from ltlc.base.codes import diagnostic
 from ltlc.base.diagnostics import Diagnostic, Fix, Help, Label
-from ltlc.base.mends import put, write, writing
+from ltlc.base.fixes import put, write, writing
 from ltlc.base.source import Source, Span
 from ltlc.frontend.syntax.lexer import END, KEYWORDS, TEMPORAL, Token, skip_blank
 
@@ -205,7 +205,7 @@ def _braces(at: Situation) -> Diagnostic | None:
 
 
 def _after_previous(at: Situation, text: str, *, is_certain: bool = False) -> Fix:
-    """The mend that puts `text` in where the last token before this one ends."""
+    """The fix that puts `text` in where the last token before this one ends."""
     return put(at.place.start if at.previous is None else at.previous.span.end, text, is_certain=is_certain)
 
 

@@ -16,7 +16,7 @@ from typing import Any
 
 from ltlc.base.codes import diagnostic
 from ltlc.base.diagnostics import Diagnostic, Help
-from ltlc.base.mends import uncertain, writing
+from ltlc.base.fixes import uncertain, writing
 from ltlc.base.source import Source, Span
 from ltlc.frontend.syntax import build, misspelled, mistakes, phrases
 from ltlc.frontend.syntax import tree as syntax

@@ -16,7 +16,7 @@ TIMES = ("time", "__time", "timestamp")
 MOST_HEADS = 100_000
 """No table has more columns."""
 
-_DOTTED = re.compile(r"\.([0-9]{1,9})(?=/|$)")
+_DOTTED = re.compile(r"\.([0-9]{1,9})(?=[./]|$)")
 _ELEMENT = re.compile(r"(.+)\[([0-9]{1,9})\]")
 
 
@@ -32,8 +32,11 @@ def time_head(heads: Sequence[str]) -> str | None:
 
 
 def standard(head: str) -> str:
-    """`head` with indexes as PlotJuggler writes them today; it wrote `/scan/ranges.3` once."""
-    return _DOTTED.sub(r"[\1]", head) if head.startswith("/") else head
+    """`head` with indexes as PlotJuggler writes them today; it wrote `/scan/ranges.3` once.
+
+    A field may stand after a dot, as in a declaration: names of topics have none.
+    """
+    return _DOTTED.sub(r"[\1]", head).replace(".", "/") if head.startswith("/") else head
 
 
 def array_and_index(head: str) -> tuple[str, int] | None:

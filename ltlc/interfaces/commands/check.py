@@ -19,7 +19,7 @@ from ltlc.frontend.language import STDIN, read_source
 from ltlc.interfaces.api.check import Check, check_of
 from ltlc.interfaces.commands import arguments
 from ltlc.interfaces.commands.common import FINDING, OK, UNUSABLE, examine, failure, report, unusable
-from ltlc.interfaces.commands.mend import NotMendedError, mend, show_difference
+from ltlc.interfaces.commands.fix import NotFixedError, fix_source, show_difference
 from ltlc.interfaces.commands.sources import found_in
 from ltlc.interfaces.commands.watching import add_watch, watched
 
@@ -48,9 +48,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="RECORDING",
         help="a recorded run: use the messages it defines, and report what it lacks; may be repeated",
     )
-    mends = parser.add_mutually_exclusive_group()
-    mends.add_argument("--fix", action="store_true", help="apply every unambiguous fix, and report the rest")
-    mends.add_argument("--diff", action="store_true", help="only show what --fix would change")
+    fixes = parser.add_mutually_exclusive_group()
+    fixes.add_argument("--fix", action="store_true", help="apply every unambiguous fix, and report the rest")
+    fixes.add_argument("--diff", action="store_true", help="only show what --fix would change")
     arguments.add_budget(parser, "limits for all analyses of a file together", 30.0)
     add_watch(parser)
 
@@ -73,24 +73,24 @@ def _run(options: argparse.Namespace) -> int:
     if options.diff:
         return max([code, *(show_difference(path, options) for path in paths)])
     checked = Check(tuple(problems), ())
-    mends, ids = 0, dict[str, str]()
+    fixes, ids = 0, dict[str, str]()
     for path in paths:
         try:
             found, done = _check(path, options, ids)
         except SpotMissing as error:
             return unusable(str(error))
-        except NotMendedError as error:
+        except NotFixedError as error:
             code = unusable(str(error))
             continue
         checked = checked + found
-        mends += done
+        fixes += done
         code = max(code, _exit_code(found, options.strict))
         if options.format in TEXT:
             _show(found, options, f"{path}: " if len(paths) > 1 else "")
     if options.format not in TEXT:
         _print_document(checked, options.format)
     elif not options.quiet:
-        _count(checked.diagnostics, len(paths), mends)
+        _count(checked.diagnostics, len(paths), fixes)
     return code
 
 
@@ -98,14 +98,14 @@ def _check(path: Path, options: argparse.Namespace, ids: dict[str, str]) -> tupl
     """What is to be said of a file, after it is fixed if that is asked for, and how often it was fixed.
 
     Those `ids` of requirements have been given, each in a file; its own are added. Raises SpotMissing and
-    NotMendedError.
+    NotFixedError.
     """
-    source, mends = read_source(path), 0
+    source, fixes = read_source(path), 0
     if options.fix and not isinstance(source, Diagnostic):
-        source, mends = mend(path, source, options)
+        source, fixes = fix_source(path, source, options)
     budget = Budget(*options.budget)
     examined = examine(source, options, budget, pedantic=options.pedantic, recordings=options.recording)
-    return check_of(_traced(_compared(examined, options), ids), source), mends
+    return check_of(_traced(_compared(examined, options), ids), source), fixes
 
 
 def _traced(examined: Examined, ids: dict[str, str]) -> Examined:
@@ -163,15 +163,15 @@ def _report(diagnostics: Sequence[Diagnostic], form: str) -> None:
         report(diagnostics)
 
 
-def _count(found: Sequence[Diagnostic], files: int, mends: int) -> None:
+def _count(found: Sequence[Diagnostic], files: int, fixes: int) -> None:
     """Say on stderr how much was found; nothing of one file without a finding."""
-    if not found and not mends and files == 1:
+    if not found and not fixes and files == 1:
         return
     counts = Counter(each.severity for each in found)
     parts = [_number(counts[severity], severity.value) for severity in Severity if counts[severity]]
     line = f"{', '.join(parts) or 'nothing found'} in {_number(files, 'file')}"
     waiting = sum(any(fix.is_certain for fix in each.fixes) for each in found)
-    line += f"; {mends} fixed" if mends else ""
+    line += f"; {fixes} fixed" if fixes else ""
     line += f"; {waiting} fixable with --fix" if waiting else ""
     print(line, file=sys.stderr)
 

@@ -308,7 +308,7 @@ class Watch:
             self._node.get_logger().warning("; ".join(silent))
 
     def _warn_of_silence(self) -> None:
-        """Say once, early enough to be mended, what has not started."""
+        """Say once, early enough to be fixed, what has not started."""
         waiting = [
             sentence(self._session, track)
             for track in self._session.tracks

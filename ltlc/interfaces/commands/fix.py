@@ -8,7 +8,7 @@ from pathlib import Path
 
 from ltlc.base.diagnostics import Diagnostic
 from ltlc.base.files import rewrite_text
-from ltlc.base.mends import apart, mended
+from ltlc.base.fixes import apart, with_fixes
 from ltlc.base.render.difference import difference
 from ltlc.base.source import Source
 from ltlc.frontend.language import STDIN, load_text, read_source
@@ -19,41 +19,41 @@ ROUNDS = 100
 """How often a text is read again: what a fix makes readable may need another."""
 
 
-class NotMendedError(Exception):
+class NotFixedError(Exception):
     """A file cannot be written; the message says which, and why."""
 
 
-def mend(path: Path, source: Source, options: argparse.Namespace) -> tuple[Source, int]:
+def fix_source(path: Path, source: Source, options: argparse.Namespace) -> tuple[Source, int]:
     """What of `source`, which was read from `path`, is left after all certain fixes, and how many there were.
 
     The file is written if there were any, the standard input goes to stdout in any case; what was done is said on
-    stderr. Raises NotMendedError.
+    stderr. Raises NotFixedError.
     """
-    better, done = _mended(source, options)
+    better, done = _fixed(source, options)
     if path == STDIN:
         sys.stdout.write(better.text)
     elif done:
         try:
             rewrite_text(path, better.text)
         except OSError as error:
-            raise NotMendedError(f"{path} cannot be written: {error.strerror or error}") from None
+            raise NotFixedError(f"{path} cannot be written: {error.strerror or error}") from None
     if not options.quiet:
         sys.stderr.writelines(f"ltlc: fixed {each}\n" for each in done)
     return better, len(done)
 
 
 def show_difference(path: Path, options: argparse.Namespace) -> int:
-    """Print what `mend` would change; 1 if that is something."""
+    """Print what `fix_source` would change; 1 if that is something."""
     source = read_source(path)
     if isinstance(source, Diagnostic):
         report([source])
         return failure([source])
-    better, done = _mended(source, options)
+    better, done = _fixed(source, options)
     sys.stdout.write(difference(source.name, source.text, better.text))
     return FINDING if done else OK
 
 
-def _mended(source: Source, options: argparse.Namespace) -> tuple[Source, list[str]]:
+def _fixed(source: Source, options: argparse.Namespace) -> tuple[Source, list[str]]:
     """`source` after all certain fixes of what its text says, and each of them in words."""
     done: list[str] = []
     for _ in range(ROUNDS):
@@ -64,5 +64,5 @@ def _mended(source: Source, options: argparse.Namespace) -> tuple[Source, list[s
         for fix in fixes:
             place = source.position(fix.edits[0][0].start)
             done.append(f"{source.name}:{place.line}:{place.column}: {fix.title}")
-        source = Source(source.name, mended(source.text, fixes))
+        source = Source(source.name, with_fixes(source.text, fixes))
     return source, done

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from ltlc.analysis.analyse import analyse
 from ltlc.automata import Budget
 from ltlc.base.diagnostics import Diagnostic, Fix
-from ltlc.base.mends import apart, mended
+from ltlc.base.fixes import apart, with_fixes
 from ltlc.base.source import Source, Span
 from ltlc.frontend.language import load_text
 from ltlc.frontend.language.suppression import suppress
@@ -21,7 +21,7 @@ from ltlc.semantics.encodings import EPISODE
 FIXTURES = sorted(p for room in ("check", "robots") for p in (Path(__file__).parent / "fixtures" / room).glob("*.txt"))
 OF_SYNTAX = "LTL0"
 
-MENDS = [
+FIXES = [
     ("never robot.velocity = 0", "never robot.velocity == 0", "LTL003", True),
     ("robot.velocity = 0", "robot.velocity == 0", "LTL003", False),
     ("never robot.velocity > 2 && true", "never robot.velocity > 2 and true", "LTL004", True),
@@ -110,22 +110,22 @@ def analysed(text: str) -> list[Diagnostic]:
     return suppress(specification, [*found, *analyse(specification, EPISODE, Budget(60.0, 1024)).diagnostics])
 
 
-@pytest.mark.parametrize(("text", "better", "code", "is_certain"), MENDS, ids=[mend[0] for mend in MENDS])
+@pytest.mark.parametrize(("text", "better", "code", "is_certain"), FIXES, ids=[fix[0] for fix in FIXES])
 def test_the_first_mend_is_what_one_would_write(text: str, better: str, code: str, is_certain: bool) -> None:
     fix = first(of_text(text), code).fixes[0]
-    assert mended(text, [fix]) == better
+    assert with_fixes(text, [fix]) == better
     assert fix.is_certain is is_certain
 
 
 @pytest.mark.parametrize(("text", "better", "code"), FINDINGS, ids=[finding[0] for finding in FINDINGS])
 def test_what_analyses_find_is_mended_by_choice_only(text: str, better: str, code: str) -> None:
     fix = first(analysed(text), code).fixes[0]
-    assert mended(text, [fix]) == better
+    assert with_fixes(text, [fix]) == better
     assert code not in [each.code for each in analysed(better)]
     assert not fix.is_certain
 
 
-@pytest.mark.parametrize(("text", "better", "code", "_"), MENDS, ids=[mend[0] for mend in MENDS])
+@pytest.mark.parametrize(("text", "better", "code", "_"), FIXES, ids=[fix[0] for fix in FIXES])
 def test_a_mended_text_has_the_fault_no_more(text: str, better: str, code: str, _: bool) -> None:
     assert [each.code for each in of_text(better)].count(code) < [each.code for each in of_text(text)].count(code)
 
@@ -135,7 +135,7 @@ def test_every_mend_of_a_fixture_takes_its_finding_away_and_breaks_no_syntax(pat
     text = path.read_text(encoding="utf-8")
     found = of_text(text)
     for finding, fix in ((each, fix) for each in found for fix in each.fixes):
-        after = of_text(mended(text, [fix]))
+        after = of_text(with_fixes(text, [fix]))
         assert messages(after)[finding.code, finding.message] < messages(found)[finding.code, finding.message]
         assert not [line for _, line in new_faults(found, after) if line in lines(text, fix)]
 
@@ -155,7 +155,7 @@ def new_faults(before: list[Diagnostic], after: list[Diagnostic]) -> set[tuple[s
 
 
 def lines(text: str, fix: Fix) -> set[int]:
-    """The lines that a mend changes: what stands further down after an error may be read only now."""
+    """The lines that a fix changes: what stands further down after an error may be read only now."""
     return {Source("", text).position(span.start).line for span, _ in fix.edits}
 
 
@@ -189,11 +189,11 @@ def test_what_may_be_meant_otherwise_is_not_certain(text: str) -> None:
 def test_of_two_mends_of_one_place_the_first_is_carried_out() -> None:
     one, two = (Fix("", ((Span(2, 3), text),)) for text in ("x", "yy"))
     other = Fix("", ((Span(0, 1), ""), (Span(5, 5), "!")))
-    assert mended("abcde", apart([one, two, other])) == "bxde!"
+    assert with_fixes("abcde", apart([one, two, other])) == "bxde!"
 
 
 @given(st.lists(st.tuples(st.integers(0, 12), st.integers(0, 3)), max_size=6))
-def test_mends_apart_are_those_that_touch_no_earlier_one(places: list[tuple[int, int]]) -> None:
+def test_fixes_apart_are_those_that_touch_no_earlier_one(places: list[tuple[int, int]]) -> None:
     fixes = [Fix(str(number), ((Span(at, at + length), "-"),)) for number, (at, length) in enumerate(places)]
     chosen: list[Fix] = []
     for fix in fixes:

@@ -62,7 +62,7 @@ def apart(fixes: Iterable[Fix]) -> list[Fix]:
     return chosen
 
 
-def mended(text: str, fixes: Iterable[Fix]) -> str:
+def with_fixes(text: str, fixes: Iterable[Fix]) -> str:
     """`text` with the `fixes` carried out, which are `apart`."""
     for span, written in sorted((edit for fix in fixes for edit in fix.edits), reverse=True):
         text = text[: span.start] + written + text[span.end :]
