@@ -40,6 +40,8 @@ def found_by(
     """What is found of each id, or of all messages; None where a row has messages with and without an id at once."""
     monitors = library.monitors()
     known, read = {signal.name: signal for signal in library.numbers}, topics(of.compiled[0].specification)
+    if not set(read).intersection(recording.rows[0].messages) and not isinstance(monitors, Table):
+        monitors.begin(recording.rows[0].time)
     for row in recording.rows:
         sample = {known[name]: value for name, value in of.cells(row).items() if name in known}
         heard = [topic for topic in row.messages if topic in read]
