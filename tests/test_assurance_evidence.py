@@ -147,6 +147,16 @@ def test_a_text_without_a_document_is_no_evidence(tmp_path: Path) -> None:
     assert (code, line) == (1, "REFUSED: this is no evidence")
 
 
+@pytest.mark.parametrize("word", ["ltlc", "text", "session", "until", "verdict"])
+def test_a_line_that_is_written_twice_is_refused(word: str, tmp_path: Path) -> None:
+    bag = write_bag(tmp_path / "bag", floats("/x", 1.0, 3.0))
+    rows = printed(evidence_of(specification(["never x > 2"]), bag)).splitlines()[:-1]
+    [at] = (number for number, row in enumerate(rows) if row.startswith(f"{word} "))
+    text = "".join(f"{row}\n" for row in [*rows[:at], f"{word} 1", *rows[at:]])
+    code, lines = said_of(f"{text}end sha256 {digest(text)}\n", bag)
+    assert (code, lines) == (1, [f"REFUSED: written twice: {word}"])
+
+
 def test_a_type_that_was_read_without_the_digest_of_its_definition_is_refused(tmp_path: Path) -> None:
     bag = write_bag(tmp_path / "bag", floats("/x", 1.0, 3.0))
     document = evidence_of(specification(["never x > 2"]), bag)

@@ -65,6 +65,7 @@ def covered(problem: str) -> Iterator[None]:
 # The document --------------------------------------------------------------------------------------------------------
 
 HEAD = {"ltlc", "specification", "certificates", "recording", "definition", "rate", "timeout", "stamp", "from", "to"}
+MANY = {"recording", "definition", "verifies", "atom", "is"}
 CLAIM = {"property", "text", "requirement", "verifies", "atom", "is", "session", "letters", "until", "verdict"}
 
 
@@ -134,6 +135,8 @@ def parsed(rows: list[str]) -> Document:
             found.claims.append(Part())
         part, known = (found.claims[-1], CLAIM) if found.claims else (found.head, HEAD)
         if word in known:
+            if word in part.said and word not in MANY:
+                raise Refused(f"written twice: {word}")
             part.said.setdefault(word, []).append(rest)
         elif word == "not-covered":
             found.not_covered.append(rest)
