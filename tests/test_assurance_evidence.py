@@ -142,6 +142,52 @@ def test_a_recording_with_another_value_is_refused_if_a_letter_changes_and_the_d
     assert [("REFUSED" in line) for line in lines] == [True, False]
 
 
+def test_a_text_without_a_document_is_no_evidence(tmp_path: Path) -> None:
+    code, [line] = said_of("", write_bag(tmp_path / "bag", floats("/x", 1.0)))
+    assert (code, line) == (1, "REFUSED: this is no evidence")
+
+
+@pytest.mark.parametrize("word", ["ltlc", "text", "session", "until", "verdict"])
+def test_a_line_that_is_written_twice_is_refused(word: str, tmp_path: Path) -> None:
+    bag = write_bag(tmp_path / "bag", floats("/x", 1.0, 3.0))
+    rows = printed(evidence_of(specification(["never x > 2"]), bag)).splitlines()[:-1]
+    [at] = (number for number, row in enumerate(rows) if row.startswith(f"{word} "))
+    text = "".join(f"{row}\n" for row in [*rows[:at], f"{word} 1", *rows[at:]])
+    code, lines = said_of(f"{text}end sha256 {digest(text)}\n", bag)
+    assert (code, lines) == (1, [f"REFUSED: written twice: {word}"])
+
+
+def test_a_type_that_was_read_without_the_digest_of_its_definition_is_refused(tmp_path: Path) -> None:
+    bag = write_bag(tmp_path / "bag", floats("/x", 1.0, 3.0))
+    document = evidence_of(specification(["never x > 2"]), bag)
+    code, lines = said_of(replace(document, head=replace(document.head, definitions=())), bag)
+    assert (code, lines) == (1, ["REFUSED: how messages are defined is not written: std_msgs/msg/Float64"])
+
+
+@pytest.mark.parametrize(
+    "condition",
+    [
+        {"op": ">", "left": [1, 2], "right": 2.0},
+        {"op": "<", "left": {"number": "many"}, "right": 2},
+        {"op": "<", "left": {"call": "hypot", "of": []}, "right": 2},
+        {"op": "<", "left": {"count": True, "over": [[[5]]]}, "right": 2},
+        {"op": "<", "left": {"topic": "/x", "type": "std_msgs/msg/Float64", "path": ["none"]}, "right": 2},
+        {"op": "<", "left": {"topic": "/x", "type": "std_msgs/msg/Float64", "path": []}, "right": 2},
+    ],
+)
+@pytest.mark.parametrize("timeout", ["", "_timeout_ = 5\n"])
+def test_an_atom_that_is_no_condition_cannot_be_checked(
+    condition: dict[str, object], timeout: str, tmp_path: Path
+) -> None:
+    bag = write_bag(tmp_path / "bag", floats("/x", 1.0, 3.0))
+    document = evidence_of(timeout + specification(["never x > 2"]), bag)
+    claim = claim_of(document, "c0")
+    forged = replace(claim, atoms=(StatedAtom("x > 2", condition),))
+    code, lines = said_of(replace(document, properties=(forged,)), bag)
+    assert code == 2
+    assert "NOT COVERED: " in lines[-1]
+
+
 def test_a_byte_that_is_changed_is_refused_by_the_reader(tmp_path: Path) -> None:
     bag = write_bag(tmp_path / "bag", floats("/x", 1.0, 3.0))
     text = printed(evidence_of(specification(["never x > 2"]), bag))

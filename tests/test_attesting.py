@@ -96,6 +96,15 @@ def test_equal_evidence_gives_equal_statements_and_pages() -> None:
     assert Path("one.html").read_bytes() == Path("two.html").read_bytes()
 
 
+@pytest.mark.usefixtures("folder")
+def test_a_statement_and_a_page_say_which_part_of_a_recording_was_judged() -> None:
+    assert main(["run", "props.txt", "drive", "--from", "+0.5", "--until", "+1", "--evidence", "e.evidence", "-q"]) == 1
+    assert certified("--statement", "s.jsonl", "--page", "p.html") == 0
+    found = json.loads(Path("s.jsonl").read_text())["predicate"]["ltlc"]
+    assert (found["from_ns"], found["to_ns"], found["stamp"]) == (1_500_000_000, 2_000_000_000, "log")
+    assert "only up to 2 s" in Path("p.html").read_text()
+
+
 def test_evidence_of_several_recordings_has_a_statement_for_each(folder: Path) -> None:
     rosbag2(folder / "other", [odometry(10**9, twist__twist__linear__x=0.25)])
     main(["run", "props.txt", "drive", "other", "--evidence", "e.evidence", "-q"])

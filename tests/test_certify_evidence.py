@@ -106,7 +106,7 @@ def test_every_claim_is_shown_by_all_three_checks(drive: Made) -> None:
         "  specification: its text, requirement and atoms are the same",
     ]
     assert lines[9] == "often: nothing is claimed: it counts how often something occurred"
-    assert "Not checked: that a property says what its requirement means" in lines[-1]
+    assert "Not checked: that a property says what its requirement means" in lines[-2]
 
 
 def test_certificates_that_are_omitted_are_made_anew(drive: Made) -> None:
@@ -168,6 +168,37 @@ def test_another_recording_of_the_same_name_is_refused(drive: Made) -> None:
     code, lines = drive.check()
     assert code == 1
     assert sum(line.startswith("  recorded: REFUSED: ") and "drive.mcap" in line for line in lines) == 2
+
+
+@pytest.mark.parametrize(("forge", "given", "code"), [(False, True, 0), (False, False, 3), (True, True, 1)])
+def test_a_recording_of_which_nothing_is_claimed_is_looked_at_all_the_same(
+    drive: Made, forge: bool, given: bool, code: int
+) -> None:
+    drive.make("decl v /v Float64.data\nnever once v > 1 3 times within 5 s\n")
+    if forge:
+        drive.forge(hashlib.sha256(drive.recording.read_bytes()).hexdigest(), "0" * 64)
+    arguments = ["--evidence", str(drive.evidence), *([str(drive.recording)] if given else []), "-q"]
+    found, lines, _ = drive.certify(str(drive.certificates), *arguments)
+    assert found == code
+    assert any(line.startswith("  REFUSED: drive.mcap is another file") for line in lines) == forge
+
+
+def test_a_recording_without_evidence_is_named_and_not_passed_over(drive: Made) -> None:
+    other = drive.recording.with_name("other.mcap")
+    mcap(other, DRIVE)
+    arguments = ["--evidence", str(drive.evidence), str(drive.recording), str(other), "-q"]
+    code, lines, _ = drive.certify(str(drive.certificates), *arguments)
+    assert (code, lines[-1]) == (3, f"there is no evidence of {other}")
+
+
+def test_what_is_reported_says_which_part_of_a_recording_was_judged(drive: Made) -> None:
+    arguments = [str(drive.properties), str(drive.recording), "--until", "+2.5", "--evidence", str(drive.evidence)]
+    assert cli.main(["run", *arguments, "-q"]) in (0, 1, 3)
+    code, lines = drive.check()
+    assert (code, lines[1:3]) == (
+        0,
+        ["  only up to 1700000002.5 s", "slow: presumably satisfied at 1700000002.5 s"],
+    )
 
 
 def test_a_byte_that_is_changed_makes_a_text_that_is_no_evidence(drive: Made) -> None:

@@ -18,10 +18,14 @@ REFUSED, NOT_COVERED = "REFUSED: ", "NOT COVERED: "
 
 @dataclass(frozen=True, slots=True)
 class Read:
-    """What the reader says of each claim of a document, in their order; and the document with all letters."""
+    """What the reader says of each claim of a document, in their order; and the document with all letters.
+
+    `refusal` is why the recording as a whole is not the one of the document, if it is not.
+    """
 
     said: tuple[str, ...]
     filled: Document
+    refusal: str | None = None
 
 
 class NotReadError(Exception):
@@ -46,7 +50,9 @@ def read(document: Document, recordings: Sequence[Path]) -> Read:
         found = parsed(filled.read_text(encoding="utf-8"))
     if isinstance(found, UnreadableEvidence):
         raise NotReadError(f"line {found.line} of what it wrote: {found.message}")
-    return Read(_said(run.stdout.splitlines(), document), found)
+    lines = run.stdout.splitlines()
+    last = lines[-1] if lines else ""
+    return Read(_said(lines, document), found, last.removeprefix(REFUSED) if last.startswith(REFUSED) else None)
 
 
 def _said(lines: Sequence[str], document: Document) -> tuple[str, ...]:

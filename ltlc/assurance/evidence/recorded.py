@@ -20,7 +20,7 @@ import os
 import re
 import sys
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import ExitStack
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
 from fractions import Fraction
 from operator import attrgetter
@@ -51,9 +51,21 @@ class NotCovered(Exception):  # noqa: N818
     """Not to be told by this program."""
 
 
+@contextmanager
+def covered(problem: str) -> Iterator[None]:
+    """Whatever else goes wrong is not covered."""
+    try:
+        yield
+    except (Refused, NotCovered):
+        raise
+    except Exception as error:
+        raise NotCovered(f"{problem}: {type(error).__name__}: {str(error).partition(chr(10))[0]}") from None
+
+
 # The document --------------------------------------------------------------------------------------------------------
 
 HEAD = {"ltlc", "specification", "certificates", "recording", "definition", "rate", "timeout", "stamp", "from", "to"}
+MANY = {"recording", "definition", "verifies", "atom", "is"}
 CLAIM = {"property", "text", "requirement", "verifies", "atom", "is", "session", "letters", "until", "verdict"}
 
 
@@ -108,6 +120,8 @@ def documents(text: str) -> Iterator[Document]:
             rows.append(row)
     if rows != [""]:
         raise Refused("the evidence does not end with its digest")
+    if not text:
+        raise Refused("this is no evidence")
 
 
 def parsed(rows: list[str]) -> Document:
@@ -121,6 +135,8 @@ def parsed(rows: list[str]) -> Document:
             found.claims.append(Part())
         part, known = (found.claims[-1], CLAIM) if found.claims else (found.head, HEAD)
         if word in known:
+            if word in part.said and word not in MANY:
+                raise Refused(f"written twice: {word}")
             part.said.setdefault(word, []).append(rest)
         elif word == "not-covered":
             found.not_covered.append(rest)
@@ -255,22 +271,16 @@ def value_at(value: Any, around: Any, path: list[Json]) -> Any:
 
 def read(path: Path, document: Document) -> Recording:
     """Read what the claims of a document need."""
-    wanted: dict[str, dict[str, Json]] = {name: {} for claim in document.claims for name in topics_of(claim.atoms)}
-    for each in (each for claim in document.claims for each in fields_of(claim.atoms)):
-        wanted[each["topic"]][json.dumps(each["path"])] = each
-    try:
-        with ExitStack() as stack:
-            found = read_bag(open_bag([path], document, stack), document, wanted)
-            if found.first is None and path.is_dir():  # rosbags finds nothing by some old metadata
-                files = [at for name, at in files_of(path).items() if is_bag(name)]
-                found = read_bag(open_bag(files, document, stack), document, wanted)
-            return found
-    except (Refused, NotCovered):
-        raise
-    except Exception as error:  # whatever rosbags says of a file that it does not read
-        raise NotCovered(
-            f"rosbags cannot read it: {type(error).__name__}: {str(error).partition(chr(10))[0]}"
-        ) from None
+    with covered("what it reads is not to be found"):
+        wanted: dict[str, dict[str, Json]] = {name: {} for claim in document.claims for name in topics_of(claim.atoms)}
+        for each in (each for claim in document.claims for each in fields_of(claim.atoms)):
+            wanted[each["topic"]][json.dumps(each["path"])] = each
+    with covered("rosbags cannot read it"), ExitStack() as stack:
+        found = read_bag(open_bag([path], document, stack), document, wanted)
+        if found.first is None and path.is_dir():  # rosbags finds nothing by some old metadata
+            files = [at for name, at in files_of(path).items() if is_bag(name)]
+            found = read_bag(open_bag(files, document, stack), document, wanted)
+    return found
 
 
 def open_bag(paths: list[Path], document: Document, stack: ExitStack) -> Any:
@@ -345,6 +355,9 @@ def read_bag(reader: Any, document: Document, wanted: dict[str, dict[str, Json]]
         topic.places.append(place)
         for taken, get in gets:
             taken.append(get(message))
+    read = {each["type"] for name, topic in found.topics.items() if topic.times for each in wanted[name].values()}
+    if undefined := sorted(read - document.head.digests("definition").keys()):
+        raise Refused(f"how messages are defined is not written: {', '.join(undefined)}")
     return part_of(found, document.head, by_header=by_header)
 
 
@@ -1109,26 +1122,27 @@ def values_of(recorded: Recording, topics: set[str], rate: Fraction | None, sess
 
 def run_of(claim: Part, recorded: Recording, head: Part, first: int, *, apart: bool) -> Run:
     """The run of a property. With `apart`, what begins with the session has an instant of its own there."""
-    atoms, rate = claim.atoms, Fraction(head.one("rate")) if head.one("rate") else None
-    begins = not is_waited_for(atoms) and (apart or rate is not None)
-    values = values_of(recorded, topics_of(atoms), rate, first if begins else None)
-    instants, count = values.instants, values.instants.count
-    letters, begun, valid = np.zeros(count, np.int64), np.ones(count, bool), np.ones(count, bool)
-    stepped = np.full(count, rate is not None)
-    stepped[:1] |= begins
-    news, messages = 0, {}
-    with np.errstate(all="ignore"):
-        for n, atom in enumerate(atoms):
-            letters |= values.predicate(atom).astype(np.int64) << n
-            begun &= values.known(atom)
-            valid &= ~values.invalid(atom)
-            stepped |= values.fresh(atom)
-            of = atom["left"] if atom["op"] == "true" and isinstance(atom["left"], dict) else {}
-            news |= ("new" in of or "message" in of) << n
-            if "message" in of:
-                messages[1 << n] = of["message"]
-    steps = np.flatnonzero(stepped & begun & valid)
-    return with_messages(Run(instants.times[steps], letters[steps], first, news), steps, instants, messages)
+    with covered("its atoms cannot be computed"):
+        atoms, rate = claim.atoms, Fraction(head.one("rate")) if head.one("rate") else None
+        begins = not is_waited_for(atoms) and (apart or rate is not None)
+        values = values_of(recorded, topics_of(atoms), rate, first if begins else None)
+        instants, count = values.instants, values.instants.count
+        letters, begun, valid = np.zeros(count, np.int64), np.ones(count, bool), np.ones(count, bool)
+        stepped = np.full(count, rate is not None)
+        stepped[:1] |= begins
+        news, messages = 0, {}
+        with np.errstate(all="ignore"):
+            for n, atom in enumerate(atoms):
+                letters |= values.predicate(atom).astype(np.int64) << n
+                begun &= values.known(atom)
+                valid &= ~values.invalid(atom)
+                stepped |= values.fresh(atom)
+                of = atom["left"] if atom["op"] == "true" and isinstance(atom["left"], dict) else {}
+                news |= ("new" in of or "message" in of) << n
+                if "message" in of:
+                    messages[1 << n] = of["message"]
+        steps = np.flatnonzero(stepped & begun & valid)
+        return with_messages(Run(instants.times[steps], letters[steps], first, news), steps, instants, messages)
 
 
 def with_messages(run: Run, steps: Array, instants: Instants, messages: dict[int, list[str]]) -> Run:

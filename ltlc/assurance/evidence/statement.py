@@ -1,7 +1,7 @@
 """Evidence that all checks accept, as a statement that can be signed: in-toto Statement v1, predicate test-result v0.1.
 
 Properties are its tests; the field `ltlc` of the predicate, which other readers pass over, has verdicts, times and
-requirements. There is no date in it: equal evidence gives equal bytes.
+requirements, and which part of a recording was judged. There is no date in it: equal evidence gives equal bytes.
 """
 
 from __future__ import annotations
@@ -67,6 +67,9 @@ def statement(evidence: File, document: Document, checked: Sequence[CheckedClaim
             "failedTests": failed,
             "ltlc": {
                 "version": head.version,
+                "from_ns": head.since,
+                "to_ns": head.until,
+                "stamp": "header" if head.is_by_header else "log",
                 "properties": [_property(claim) for claim in claims],
                 "not_covered": [
                     {"property": each.label, "reason": each.reason} for each in of if isinstance(each, NotCovered)

@@ -1,9 +1,15 @@
-"""The conditions of atoms in words, made from the data that is checked, not from what their author called them."""
+"""How a recording was judged, and the conditions of atoms, in words.
+
+They are made from the data that is checked, not from what an author called them.
+"""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+
+from ltlc.assurance.evidence.document import Head
+from ltlc.semantics.durations import seconds_text
 
 Json = object
 
@@ -16,6 +22,20 @@ _RELATIONS = {
     ">": "is greater than",
     "same": "is",
 }
+
+
+def settings_in_words(head: Head) -> Iterator[str]:
+    """How the recording was judged, where it was not judged as it is."""
+    if head.rate is not None:
+        yield f"sampled {head.rate} times a second"
+    if head.timeout is not None:
+        yield f"a run ends after {seconds_text(head.timeout)} s"
+    if head.is_by_header:
+        yield "messages have the times of their headers"
+    if head.since is not None:
+        yield f"only from {seconds_text(head.since)} s on"
+    if head.until is not None:
+        yield f"only up to {seconds_text(head.until)} s"
 
 
 def in_words(condition: Json) -> str:

@@ -11,6 +11,7 @@ from ltlc.assurance.evidence.document import Claim, Document, NotCovered, Unread
 from ltlc.assurance.evidence.outcomes import Check, CheckedClaim
 from ltlc.assurance.evidence.reader import NotReadError, Read, read, recordings_of
 from ltlc.assurance.evidence.seam import differences
+from ltlc.assurance.evidence.words import settings_in_words
 from ltlc.interfaces.commands.common import FINDING, OK, UNDECIDED
 from ltlc.interfaces.commands.progress import progress
 from ltlc.semantics.certificate_text import Entry
@@ -27,7 +28,8 @@ recorded: the recording has these letters, if each atom is what it is stated to 
   shares nothing with ltlc; numpy; rosbags.
 specification: the properties, their requirements, and what each atom is, are those of the specification. Trusted: the
   front end of ltlc.
-Not checked: that a property says what its requirement means, and that the recording shows what happened.
+Not checked: that a property says what its requirement means, that the recording shows what happened, and why nothing
+  is claimed of a property.
 """
 """What the checks show, and what they leave to trust."""
 
@@ -61,16 +63,27 @@ def check_evidence(
         objections = [*differences(document, specification)]
         if document.head.certificates != certificates[0]:
             objections.append(f"it names certificates with another SHA-256: {document.head.certificates}")
-        claims = checked(document, specification, certificates[1], _read(document, recordings, quiet))
+        read_ = _read(document, recordings, quiet)
+        if read_ is not None and read_.refusal is not None and not read_.said:
+            objections.append(read_.refusal)
+        claims = checked(document, specification, certificates[1], read_)
         found.append(claims)
         print("\n".join(_report(document, objections, claims, quiet)))
         if objections or any(claim.is_refused for claim in claims):
             code = FINDING
-        elif code == OK and any(claim.checks and not claim.is_accepted for claim in claims):
+        elif code == OK and (read_ is None or any(claim.checks and not claim.is_accepted for claim in claims)):
             code = UNDECIDED
+    for path in _without_evidence(documents, recordings):
+        print(f"there is no evidence of {path}")
+        code = code or UNDECIDED
     if not quiet:
         print(f"\n{MEANING}", end="")
     return code, found
+
+
+def _without_evidence(documents: Sequence[Document], recordings: Sequence[Path]) -> Iterator[Path]:
+    of = {path for document in documents for path in recordings_of(document, recordings)}
+    return (path for path in recordings if path not in of)
 
 
 def _read(document: Document, recordings: Sequence[Path], quiet: bool) -> Read | None:
@@ -90,6 +103,7 @@ def _report(
 ) -> Iterator[str]:
     names = ", ".join(file.name for file in document.head.recordings)
     yield f"evidence of {names}, by ltlc {document.head.version}"
+    yield from (f"  {each}" for each in settings_in_words(document.head))
     yield from (f"  REFUSED: {each}" for each in objections)
     for claim in claims:
         yield f"{claim.of.label}: {_conclusion(claim, is_refused=bool(objections))}"

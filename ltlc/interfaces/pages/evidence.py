@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from ltlc.assurance.evidence.document import Claim, Document, File, NotCovered, Summed
 from ltlc.assurance.evidence.outcomes import Check, CheckedClaim
 from ltlc.assurance.evidence.statement import Result, State
-from ltlc.assurance.evidence.words import in_words
+from ltlc.assurance.evidence.words import in_words, settings_in_words
 from ltlc.backends.templates import template
 from ltlc.runtime.reports import printable
 from ltlc.runtime.times import seconds_text
@@ -68,7 +68,7 @@ def _recording(
     """What is shown of the evidence of one recording."""
     return {
         "files": document.head.recordings,
-        "settings": list(_settings(document)),
+        "settings": list(settings_in_words(document.head)),
         "claims": [
             {
                 "id": f"{id_}-{number}",
@@ -81,21 +81,6 @@ def _recording(
         ],
         "not_covered": [each.of for each in found if isinstance(each.of, NotCovered)],
     }
-
-
-def _settings(document: Document) -> Iterator[str]:
-    """How the recording was read, where it was not read as it is."""
-    head = document.head
-    if head.rate is not None:
-        yield f"sampled {head.rate} times a second"
-    if head.timeout is not None:
-        yield f"a run ends after {seconds_text(head.timeout)} s"
-    if head.is_by_header:
-        yield "messages have the times of their headers"
-    if head.since is not None:
-        yield f"only from {seconds_text(head.since)} s on"
-    if head.until is not None:
-        yield f"only up to {seconds_text(head.until)} s"
 
 
 def _claim(claim: Claim, found: CheckedClaim) -> dict[str, Any]:
