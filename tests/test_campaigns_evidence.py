@@ -99,6 +99,14 @@ def test_a_file_that_cannot_be_written_is_unusable(drives: Path, capsys: pytest.
     assert "cannot be written" in capsys.readouterr().err
 
 
+@pytest.mark.usefixtures("drives")
+def test_another_file_is_not_replaced(capsys: pytest.CaptureFixture[str]) -> None:
+    Path("all.evidence").write_text("notes")
+    assert campaign() == 2
+    assert "another file is there that is not evidence" in capsys.readouterr().err
+    assert Path("all.evidence").read_text() == "notes"
+
+
 def test_of_one_recording_it_is_written_as_a_whole_or_not_at_all(
     drives: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -321,6 +321,8 @@ def test_a_file_of_the_same_name_is_replaced_and_that_is_said(here: Path, capsys
         ("a.mcap --cut p.ltlc", "--cut p.ltlc: not a folder"),
         ("bag --cut bag/cut", "bag/cut is not written: that file is an input"),
         ("a.mcap a.mcap --cut cut", "--cut takes a single recording"),
+        ("a.mcap --before 1s", "--before and --after need --cut"),
+        ("a.mcap --after 1s", "--before and --after need --cut"),
     ],
 )
 def test_what_cannot_be_cut_is_refused_before_it_is_judged(

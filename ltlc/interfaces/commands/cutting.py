@@ -16,9 +16,12 @@ from ltlc.interfaces.commands.progress import saying
 from ltlc.monitoring.judging.extracts import Extract, extracts
 from ltlc.monitoring.judging.run import RunReport
 from ltlc.runtime.reports import counted
+from ltlc.runtime.times import SECOND
 
 if TYPE_CHECKING:
     from ltlc.inputs.recordings.bags.copying import Copier
+
+BEFORE, AFTER = 5 * SECOND, 2 * SECOND
 
 
 def add_cut(group: argparse._ArgumentGroup) -> None:
@@ -32,14 +35,12 @@ def add_cut(group: argparse._ArgumentGroup) -> None:
     group.add_argument(
         "--before",
         type=arguments.duration,
-        default="5s",
         metavar="TIME",
         help="begin so long before the violation, or before what was owed began (default: 5s)",
     )
     group.add_argument(
         "--after",
         type=arguments.duration,
-        default="2s",
         metavar="TIME",
         help="end so long after the violation (default: 2s)",
     )
@@ -62,7 +63,9 @@ def cut(found: RunReport, path: Path, options: argparse.Namespace) -> int:
     """Write the extracts of a recording that was judged; the exit code."""
     from ltlc.inputs.recordings.bags.copying import Copier
 
-    parts = [] if found.session is None else list(extracts(found.session, options.before, options.after))
+    before = BEFORE if options.before is None else options.before
+    after = AFTER if options.after is None else options.after
+    parts = [] if found.session is None else list(extracts(found.session, before, after))
     if not parts:
         if not options.quiet:
             print(f"ltlc: nothing is written to {options.cut}: no property is violated", file=sys.stderr)

@@ -82,6 +82,8 @@ def _add_campaign(group: argparse._ArgumentGroup) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Judge once, or whenever a file changes; the exit code."""
+    if not options.cut and (options.before, options.after) != (None, None):
+        return unusable("--before and --after need --cut")
     if options.watch:
         outputs = (options.report, options.output, options.summary, options.results, options.evidence, options.cut)
         read = [options.specification, *options.recordings, *options.msg_path]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from errno import EEXIST
 from os import SEEK_END
 from pathlib import Path
 from typing import Self
@@ -11,6 +12,9 @@ from typing import Self
 from ltlc.assurance.evidence.document import HEADER, File, UnreadableEvidence, parsed, printed
 from ltlc.monitoring.campaigns.places import Location, is_address
 from ltlc.monitoring.judging.evidence import Digests, Evidence
+
+_FIRST = f"{HEADER}\n".encode()
+"""How a bundle begins."""
 
 
 class BundleError(Exception):
@@ -32,6 +36,8 @@ class Bundle:
         self._path = path
         with _writing():
             self._before = path.read_bytes() if path.exists() else b""
+            if not (self._before.startswith(_FIRST) or _FIRST.startswith(self._before)):
+                raise FileExistsError(EEXIST, "another file is there that is not evidence")
             self._file = path.open("r+b" if path.exists() else "w+b", buffering=0)
         self._end = 0
         self._known = dict(_documents(self._before, evidence))
