@@ -102,6 +102,7 @@ MISTAKES: tuple[Line | Told | Command, ...] = (
     ),
     Line("never /odom/twist/twist/linear/x > 1", "LTL021", "never v > 1"),
     Line("decl w /odom Odometry pose.pose.position.x", "LTL021", "decl w /odom Odometry.pose.pose.position.x"),
+    Line("decl w Odometry /odom.pose.pose.position.x", "LTL021", "decl w /odom Odometry.pose.pose.position.x"),
     Command("build props.txt -t json -o made.json", "wrote made.json"),
     Command("checks props.txt", "did you mean `check`?"),
     Command("run props.txt column.csv", "rename one, of `speed`, or the signal"),
