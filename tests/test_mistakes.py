@@ -105,7 +105,14 @@ MISTAKES: tuple[Line | Told | Command, ...] = (
     Line("decl w Odometry /odom.pose.pose.position.x", "LTL021", "decl w /odom Odometry.pose.pose.position.x"),
     Command("build props.txt -t json -o made.json", "wrote made.json"),
     Command("checks props.txt", "did you mean `check`?"),
-    Command("run props.txt column.csv", "rename one, of `speed`, or the signal"),
+    Command("run props.txt column.csv", "its other column is `speed`: rename it to `v`, or change the declaration"),
+    Command(
+        "run props.txt columns.csv", "its other columns are `vel`, `a`, `b`, `c`, `d` and 2 more: rename one to `v`"
+    ),
+    Command("run props.txt columns.jsonl", "its other columns are `vel`, `level`"),
+    Command(
+        "run props.txt topics.csv", "its other columns are `/odom/twist/twist/linear/y`, `/imu/x`: rename one to `v`"
+    ),
     Command("run props.txt odom.mcap --from 2000000000", "the recording ends before"),
     # Not.
     Line("globally: no /odom {twist.twist.linear.x > 1} within 3 s", "LTL021", "never (new v and v > 1) within 3 s"),
@@ -161,6 +168,9 @@ FILES = {
     "nanoseconds.csv": "time,v\n1769787125000000000,0.1\n",
     "semicolons.csv": "time;v\n0;0,1\n",
     "column.csv": "time,speed\n0,0.1\n1,0.2\n",
+    "columns.csv": "time,a,b,c,d,e,vel,scan[0],scan[1]\n0,0,0,0,0,0,0.1,0,0\n",
+    "columns.jsonl": '{"time": 0, "level": 0, "vel": 0.1}\n',
+    "topics.csv": "time,/imu/x,/odom/twist/twist/linear/y\n0,0,0.1\n",
     "calendar.csv": "time,v\n2026-01-30T15:32:05.5,0.1\n",
     "flight.ulg": "ULog",
 }
