@@ -306,7 +306,7 @@ def test_the_level_of_a_status_tells_how_bad_it_is(topics: dict[str, Any]) -> No
     [
         ({"rate": -1}, "rate is -1: it must be a number that is not negative"),
         ({"on_violation": "stop"}, "on_violation is 'stop': it must be 'continue' or 'end'"),
-        ({"tiemout": 3}, "no parameter is called tiemout"),
+        ({"tiemout": 3}, "no parameter is called tiemout; did you mean timeout? there are rate,"),
         ({"junit": "/proc/none/report.xml"}, "its folder is not writable"),
     ],
 )

@@ -277,6 +277,13 @@ def test_the_next_step_is_offered_as_the_next_message(line: str, first: int | No
         ("w = /imu Imu.angular_velocity.z", "decl w /imu Imu.angular_velocity.z"),
         ("decl w odom/pose/pose/position/x", "decl w odom Odometry.pose.pose.position.x"),
         ("decl w /odom Odometry pose/pose/position/x", "decl w /odom Odometry.pose.pose.position.x"),
+        ("decl w std_msgs/Float64 /w.data", "decl w /w std_msgs/Float64.data"),
+        ("decl w Odometry.pose.pose.position.x /odom", "decl w /odom Odometry.pose.pose.position.x"),
+        (
+            "decl scans sensor_msgs/msg/LaserScan /scan.ranges[0]",
+            "decl scans /scan sensor_msgs/msg/LaserScan.ranges[0]",
+        ),
+        ("decl w Odometry /odom", "decl w /odom Odometry"),
     ],
 )
 def test_a_declaration_in_another_spelling_is_answered(line: str, written: str) -> None:
@@ -300,6 +307,7 @@ def test_each_phrase_is_tried_here() -> None:
         "w = /imu Imu.a",
         "decl w /odom/a/b",
         "decl w /w B a/b",
+        "decl w B /w.a",
     ]
     untried = [
         phrase.pattern

@@ -77,8 +77,13 @@ MISTAKES: tuple[Line | Told | Command, ...] = (
     Command("run other.txt odom.mcap", "its topics are `/odom`"),
     Command("run twist.txt odom.mcap", "`nav_msgs/msg/Odometry` in the recording, not `geometry_msgs/msg/Twist`"),
     Command("run typo.txt odom.mcap", "did you mean `/odom`?"),
-    Told("decl w /odom Odometry.twist.twist.linear.q", "LTL203", "its fields are `x`, `y`, `z`"),
-    Told("decl w /odom Odometry never w > 1", "LTL220", "a value is declared with its path"),
+    Line("decl w /odom Odometry.twist.twist.linear.q", "LTL203", "decl w /odom Odometry.twist.twist.linear.x"),
+    Line("decl w /odom Odometry.linear.x", "LTL203", "decl w /odom Odometry.twist.twist.linear.x"),
+    Line("decl w /odom Odometry.twist.linear.x", "LTL203", "decl w /odom Odometry.twist.twist.linear.x"),
+    Told("decl w /odom Odometry.x", "LTL203", "its fields are `header`, `child_frame_id`, `pose`, `twist`"),
+    Line("decl w /lamp Bool\nnever w", "LTL220", "decl w /lamp Bool.data\nnever w"),
+    Line("decl w /w std_msgs/Float64\nnever w > 1", "LTL220", "decl w /w std_msgs/Float64.data\nnever w > 1"),
+    Told("decl w /odom Odometry never w > 1", "LTL220", "as in `Odometry.pose.pose.position` or `Odometry.pose.pose."),
     Line("decl w /odom Odometri.twist.twist.linear.x", "LTL201", "decl w /odom Odometry.twist.twist.linear.x"),
     Command("run props.txt cell.csv", "line 3: column `v`: `abc` is not a number"),
     Command("run props.txt untimed.csv", "there is no column `time`"),
@@ -102,9 +107,17 @@ MISTAKES: tuple[Line | Told | Command, ...] = (
     ),
     Line("never /odom/twist/twist/linear/x > 1", "LTL021", "never v > 1"),
     Line("decl w /odom Odometry pose.pose.position.x", "LTL021", "decl w /odom Odometry.pose.pose.position.x"),
+    Line("decl w Odometry /odom.pose.pose.position.x", "LTL021", "decl w /odom Odometry.pose.pose.position.x"),
     Command("build props.txt -t json -o made.json", "wrote made.json"),
     Command("checks props.txt", "did you mean `check`?"),
-    Command("run props.txt column.csv", "rename one, of `speed`, or the signal"),
+    Command("run props.txt column.csv", "its other column is `speed`: rename it to `v`, or change the declaration"),
+    Command(
+        "run props.txt columns.csv", "its other columns are `vel`, `a`, `b`, `c`, `d` and 2 more: rename one to `v`"
+    ),
+    Command("run props.txt columns.jsonl", "its other columns are `vel`, `level`"),
+    Command(
+        "run props.txt topics.csv", "its other columns are `/odom/twist/twist/linear/y`, `/imu/x`: rename one to `v`"
+    ),
     Command("run props.txt odom.mcap --from 2000000000", "the recording ends before"),
     # Not.
     Line("globally: no /odom {twist.twist.linear.x > 1} within 3 s", "LTL021", "never (new v and v > 1) within 3 s"),
@@ -126,7 +139,7 @@ MISTAKES: tuple[Line | Told | Command, ...] = (
     Line("always v between 0 and 1", "LTL021", "always (0 <= v and v <= 1)"),
     Line("never |v| > 2", "LTL021", "never abs(v) > 2"),
     Line("never v > 2;", "LTL021", "never v > 2"),
-    Told("never v == NaN", "LTL101", "a sample that is NaN makes no step"),
+    Told("never v == NaN", "LTL101", "omit this comparison: a sample that is NaN makes no step"),
     Line("never v > inf", "LTL101", "never v > (1 / 0)"),
     Line("never robot.speed > 1", "LTL105", "never robot.velocity > 1"),
     Line("never v' > 2", "LTL021", "never (v - @{v, -1}) > 2"),
@@ -160,6 +173,9 @@ FILES = {
     "nanoseconds.csv": "time,v\n1769787125000000000,0.1\n",
     "semicolons.csv": "time;v\n0;0,1\n",
     "column.csv": "time,speed\n0,0.1\n1,0.2\n",
+    "columns.csv": "time,a,b,c,d,e,vel,scan[0],scan[1]\n0,0,0,0,0,0,0.1,0,0\n",
+    "columns.jsonl": '{"time": 0, "level": 0, "vel": 0.1}\n',
+    "topics.csv": "time,/imu/x,/odom/twist/twist/linear/y\n0,0,0.1\n",
     "calendar.csv": "time,v\n2026-01-30T15:32:05.5,0.1\n",
     "flight.ulg": "ULog",
 }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import http.client
 import json
 import os
@@ -16,6 +17,7 @@ from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
 from typing import Any
+from unittest.mock import Mock
 
 import pytest
 from hypothesis import given, settings
@@ -460,7 +462,21 @@ def test_a_file_that_is_not_there_is_unusable(tmp_path: Path, capsys: pytest.Cap
 
 def test_a_port_that_is_taken_is_unusable(server: Server, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["serve", "--port", str(server.server_address[1])]) == 2
-    assert "cannot be served: Address already in use" in capsys.readouterr().err
+    port = server.server_address[1]
+    assert f"another program uses port {port} of 127.0.0.1: `ltlc serve --port 0` takes" in capsys.readouterr().err
+
+
+def test_an_address_of_another_machine_is_unusable(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["serve", "--host", "192.0.2.1", "--port", "0"]) == 2
+    assert "`--host` must be an address of this machine" in capsys.readouterr().err
+
+
+def test_a_port_for_administrators_is_unusable(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(Server, "__init__", Mock(side_effect=PermissionError(errno.EACCES, "Permission denied")))
+    assert main(["serve", "--port", "80"]) == 2
+    assert "choose one from 1024 on, or `--port 0` for a free one" in capsys.readouterr().err
 
 
 def test_a_number_that_is_no_port_is_refused(capsys: pytest.CaptureFixture[str]) -> None:

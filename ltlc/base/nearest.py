@@ -9,6 +9,9 @@ from difflib import get_close_matches
 MIN_LENGTH, MAX_LENGTH = 3, 100
 """Shorter names are like too many others; comparing longer ones takes long."""
 
+MOST_ALIKE = 5
+"""So many names are put first because they are alike."""
+
 
 def nearest(name: str, known: Iterable[str]) -> str | None:
     """The name of `known` that is most like `name`, ignoring case; None if none is alike."""
@@ -17,6 +20,13 @@ def nearest(name: str, known: Iterable[str]) -> str | None:
     candidates = {candidate.lower(): candidate for candidate in known}
     matches = get_close_matches(name.lower(), candidates, n=1, cutoff=0.7)
     return candidates[matches[0]] if matches else None
+
+
+def nearest_first(name: str, known: Iterable[str]) -> list[str]:
+    """The `known` names, those that are most like `name` first, the others in their order."""
+    names = list(dict.fromkeys(known))
+    comparable = [each for each in names if len(each) <= MAX_LENGTH] if len(name) <= MAX_LENGTH else []
+    return list(dict.fromkeys(get_close_matches(name, comparable, n=MOST_ALIKE, cutoff=0.2) + names))
 
 
 def did_you_mean(name: str, known: Iterable[str]) -> str:

@@ -18,13 +18,13 @@ from ltlc.frontend.language.references import kind
 from ltlc.frontend.language.scopes import Scopes
 from ltlc.frontend.language.signals import SIMULATORS, SOURCES, Landmark, Tracked, from_field
 from ltlc.frontend.language.types import message_type, type_path
-from ltlc.frontend.language.values import Value
+from ltlc.frontend.language.values import Message, Value
 from ltlc.frontend.language.zones import zone
 from ltlc.frontend.syntax import tree as syntax
 from ltlc.frontend.syntax.lexer import skip_blank
 from ltlc.frontend.syntax.parse import MAX_DEPTH
 from ltlc.semantics.durations import Nanoseconds
-from ltlc.specification.expressions import Field
+from ltlc.specification.expressions import Field, Signal, ValueType
 from ltlc.specification.specification import DefinitionKind
 
 MOST_RATE = 1e6
@@ -208,7 +208,10 @@ class Definitions:
             return None
         if topic is None:
             return None
-        return from_field(name, found.kind, Field(topic, found.message, found.path, found.numbers))
+        field = Field(topic, found.message, found.path, found.numbers)
+        if found.kind == "message":
+            return Message(Signal(name, ValueType.BOOLEAN, field), command.type.span)
+        return from_field(name, found.kind, field)
 
     def _model(self, command: syntax.Model) -> None:
         attributes: dict[str, ModelAttribute] = {}

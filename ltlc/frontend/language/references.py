@@ -17,7 +17,7 @@ from ltlc.base.source import Span
 from ltlc.frontend.language.names import Associated, Checker, Sort
 from ltlc.frontend.language.primitives import ERRORS, MODELLED, PRIMITIVES, QUANTITIES, RELATIONS
 from ltlc.frontend.language.signals import Thing, Tracked, components, from_field
-from ltlc.frontend.language.types import MAX_DIGITS, message_type, messages_on, value_in
+from ltlc.frontend.language.types import MAX_DIGITS, message_type, messages_on, values_in
 from ltlc.frontend.language.values import Array, Message, Orientation, Scalar, Text, Truth, Value, Vector, expressions
 from ltlc.frontend.syntax import tree as syntax
 from ltlc.frontend.syntax.lexer import FUNCTIONS, KEYWORDS, RESERVED, TEMPORAL, next_token
@@ -28,7 +28,7 @@ from ltlc.specification.functions import INSIDE
 from ltlc.specification.specification import fields
 
 _NO_NAMES = {
-    "nan": "NaN needs no condition: a sample that is NaN makes no step, and is counted and reported",
+    "nan": "omit this comparison: a sample that is NaN makes no step, and reports state how many there were",
 }
 """Names of other languages for numbers that have none here."""
 
@@ -228,11 +228,14 @@ def no_field(checker: Checker, place: Span, message: Message) -> None:
     """Report that `message` stands where a value is needed."""
     name, field = message.signal.name, message.signal.definition
     assert isinstance(field, Field)
-    path = value_in(field.message, checker.types)
-    asked = f"use `new {name}` or `age({name})`"
-    declared = f"; a value is declared with its path, as in `{field.message.replace('/msg/', '/')}.{path}`"
+    help = f"use `new {name}` or `age({name})`"
+    written = checker.source.excerpt(message.declared)
+    values = [f"{written}.{path}" for path in values_in(field.message, checker.types)[:MOST_OFFERED]]
+    if values:
+        help += f"; a value is declared with its path, as in {' or '.join(f'`{value}`' for value in values)}"
     text = f"`{name}` has no value: it is declared without a field of `{field.message}`"
-    checker.report("LTL220", place, text, help=asked + (declared if path else ""))
+    fixes = tuple(writing(message.declared, value) for value in values)
+    checker.report("LTL220", place, text, help=Help(help, fixes))
 
 
 def _known_as(step: syntax.Word, known: Sequence[str]) -> Help | None:

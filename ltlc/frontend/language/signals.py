@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 
 from ltlc.frontend.language.values import (
     Array,
-    Message,
     Orientation,
     Scalar,
     Text,
@@ -41,7 +40,7 @@ def signal(name: str, definition: Field | Expression, type_: ValueType = ValueTy
 
 
 def from_field(name: str, kind: str, field: Field) -> Value:
-    """The value called `name` that `field` holds; `kind` is that of a `types.TypePath`."""
+    """The value called `name` that `field` holds; `kind` is that of a `types.TypePath`, not `message`."""
     match kind:
         case "number":
             return Scalar(signal(name, field))
@@ -53,8 +52,6 @@ def from_field(name: str, kind: str, field: Field) -> Value:
             type_ = ValueType(f"array of {kind}")
             assert type_.element is not None
             return Array(signal(name, field, type_), type_.element)
-        case "message":
-            return Message(Signal(name, ValueType.BOOLEAN, field))
         case "vector":
             x, y, z = (signal(f"{name}.{axis}", _inside(field, axis)) for axis in "xyz")
             return Vector((x, y, z), name)

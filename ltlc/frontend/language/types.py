@@ -17,6 +17,9 @@ from ltlc.specification.expressions import Bytes, Each, Field, PathStep
 from ltlc.specification.wire import DOUBLES, PRIMITIVES, Numbers
 
 _PART = re.compile(r"[^.\[\]]+|\[[^\]]*\]?|\.")
+MOST_CHOICES = 5
+"""A message of more fields is not one to choose a fix from."""
+
 MAX_DIGITS = 9
 """How many digits an index may have; no message has so many elements."""
 
@@ -203,8 +206,8 @@ def _field(
     source: Source, part: syntax.Word, type_: FieldType, types: MessageTypes
 ) -> tuple[PathStep, FieldType] | Diagnostic:
     if type_.is_list:
-        help = f"choose an element, as in `[0].{part.text}`, or all, as in `[].{part.text}`"
-        return diagnostic("LTL203", source, part.span, f"`{type_}` is an array: its elements have fields", help=help)
+        choice = f"choose an element, as in `[0].{part.text}`, or all, as in `[].{part.text}`"
+        return diagnostic("LTL203", source, part.span, f"`{type_}` is an array: its elements have fields", help=choice)
     known = types.messages.get(type_.base)
     if known is None:
         return diagnostic("LTL203", source, part.span, f"a value of type `{type_}` has no fields")
@@ -212,31 +215,52 @@ def _field(
         return part.text, known.fields[part.text]
     near = respell(part.span, part.text, known.fields, is_closed=True)
     message = f"`{type_.base}` has no field `{part.text}`"
-    return diagnostic("LTL203", source, part.span, message, help=near or _fields_text(known.fields))
+    help = near or _inside(part, known, types) or _fields_help(part, known)
+    return diagnostic("LTL203", source, part.span, message, help=help)
 
 
-def _fields_text(fields: object) -> str:
-    names = [f"`{name}`" for name in fields] if isinstance(fields, dict) else []
-    return f"its fields are {', '.join(names)}" if names else "it has no fields"
+def _inside(part: syntax.Word, known: Message, types: MessageTypes) -> Help | None:
+    """The path to the field called `part` in the fields of a message; None if none, or several as deep, have one."""
+    level = [("", known)]
+    while level:
+        inner = [
+            (f"{path}{name}.", types.messages[field.base])
+            for path, of in level
+            for name, field in of.fields.items()
+            if not field.is_list and field.base in types.messages and field.base != "std_msgs/msg/Header"
+        ]
+        found = [f"{path}{part.text}" for path, of in inner if part.text in of.fields]
+        if found:
+            return write(writing(part.span, found[0])) if len(found) == 1 else None
+        level = inner
+    return None
+
+
+def _fields_help(part: syntax.Word, known: Message) -> Help:
+    """The fields to choose from, each a fix if they are few."""
+    if not known.fields:
+        return Help("it has no fields")
+    fixes = tuple(writing(part.span, name) for name in known.fields) if len(known.fields) <= MOST_CHOICES else ()
+    return Help(f"its fields are {', '.join(f'`{name}`' for name in known.fields)}", fixes)
 
 
 def _no_value(source: Source, word: syntax.Word, type_: FieldType, types: MessageTypes) -> Diagnostic:
     message = f"the path ends in `{type_}`, which is not a value"
     whole = f"{word.text}[]" if type_.is_list else word.text
-    inside = value_in(type_.base, types) if type_.base in types.messages else ""
+    inside = values_in(type_.base, types) if type_.base in types.messages else []
     help = (
-        f"continue to a value, as in `{whole}.{inside}`"
+        f"continue to a value, as in `{whole}.{inside[0]}`"
         if inside
         else "numbers, booleans, strings and vectors are values"
     )
     return diagnostic("LTL204", source, word.span, message, help=help)
 
 
-def value_in(message: str, types: MessageTypes) -> str:
-    """The path to a value in a message, by way of example, rather a number or a vector; empty if there is none."""
+def values_in(message: str, types: MessageTypes) -> list[str]:
+    """The paths to single values in a message, numbers and vectors first."""
     singles = ("number", "vector", "orientation"), ("boolean", "string")
     found = values_of(message, types)
-    return next((path for kinds in singles for path, kind in found if kind in kinds), "")
+    return [path for kinds in singles for path, kind in found if kind in kinds]
 
 
 def values_of(message: str, types: MessageTypes) -> list[tuple[str, str]]:

@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 
+from ltlc.base.source import Span
 from ltlc.semantics import ltl
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.specification.evaluation import apply, calculate
@@ -100,9 +101,10 @@ class Orientation(Value):
 
 @dataclass(frozen=True, slots=True)
 class Message(Value):
-    """The messages of a topic, of which no field is named: `signal` says that they came."""
+    """The messages of a topic, of which no field is named where their type is `declared`: `signal` says they came."""
 
     signal: Signal
+    declared: Span
     noun = "a message"
 
 
@@ -143,7 +145,7 @@ def expressions(value: Value) -> tuple[Expression, ...]:
             return (e,)
         case Vector(components, _) | Orientation(components, _, _):
             return components
-        case Message(signal):
+        case Message(signal, _):
             return (Current(signal),)
         case Duration() | AgeOf() | Zone():
             return ()

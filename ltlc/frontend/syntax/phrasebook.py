@@ -71,7 +71,7 @@ PHRASES: tuple[Phrase, ...] = (
     Phrase(rf"(?P<x>.*)\bin\s+{_D}(?P<y>.*)", "{x!r}within {d!r}{y!r}"),
     Phrase(r"(?P<x>.*)\bage\(\s*(?P<t>/[\w/]+)\s*\)(?P<y>.*)", "{x!r}age({t.name}){y!r}"),
     Phrase(r"(?P<x>.*?)\bnew\s+(?P<t>/[\w/]+)(?P<y>.*)", "{x!r}new {t.name}{y!r}"),
-    Phrase(r"(?P<x>.*?(?:^|[\s(]))(?P<t>/\w+(?:[./]\w+)+)(?P<y>.*)", "{x!r}{t.signal}{y!r}"),
+    Phrase(r"(?P<x>(?!decl\b).*?(?:^|[\s(]))(?P<t>/\w+(?:[./]\w+)+)(?P<y>.*)", "{x!r}{t.signal}{y!r}"),
     *(
         Phrase(rf"(?P<x>.*)\b{word}\((?P<c>[^()]*{relation}[^()]*)\)(?P<y>.*)", f"{{x!r}}{written}({{c!r}}){{y!r}}")
         for word, relation, written in (
@@ -111,6 +111,10 @@ PHRASES: tuple[Phrase, ...] = (
     Phrase(
         r"decl\s+(?P<n>\w+)\s+(?P<t>\S+)\s+(?P<m>[\w/]*[A-Z]\w*)[\s/]+(?P<f>[a-z]\w*(?:/\w+)+)",
         "decl {n!r} {t!r} {m!r}.{f.path}",
+    ),
+    Phrase(
+        r"(?P<x>decl\s+\w+)\s+(?P<m>(?:\w+/)*[A-Z]\w*(?:\.[\w.\[\]]+)?)\s+(?P<t>/[\w/]+)(?P<f>(?:\.[\w.\[\]]+)?)",
+        "{x!r} {t!r} {m!r}{f!r}",
     ),
     Phrase(r"(?P<x>decl\s+\w+\s+\S+\s+\w+)(?:::msg)?::(?P<y>\S+)", "{x!r}/{y!r}"),
     Phrase(r"(?P<x>decl\s+\w+\s+\S+\s+[\w/]+)\s+(?P<y>[a-z][\w.\[\]]*)", "{x!r}.{y!r}"),

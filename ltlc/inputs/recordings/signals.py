@@ -15,7 +15,7 @@ import numpy as np
 
 from ltlc.base.codes import diagnostic
 from ltlc.base.diagnostics import Diagnostic
-from ltlc.base.nearest import did_you_mean
+from ltlc.base.nearest import did_you_mean, nearest_first
 from ltlc.base.source import Source
 from ltlc.inputs.recordings.blocks import Block, Places, Ragged, Samples, kind_of
 from ltlc.inputs.recordings.fence import fenced
@@ -154,7 +154,7 @@ _ARRAYS = {type_.element: type_ for type_ in ValueType if type_.element is not N
 
 
 MOST_LISTED = 5
-"""So many columns are offered at most."""
+"""So many columns are listed at most."""
 
 
 class FromTable:
@@ -175,8 +175,7 @@ class FromTable:
 
         Not those by topic and field: whoever exports messages has all of their fields.
         """
-        read = {head for source in self._sources.values() for head in source.columns}
-        kept = [head for head in self._heads if head in self._sources or (head not in read and head[:1] != "/")]
+        kept = [head for head in self._heads if head in self._sources or (head not in self.cells and head[:1] != "/")]
         return (*kept, *(name for name in self._sources if name not in kept))
 
     def absence(self, name: str) -> str:
@@ -187,11 +186,19 @@ class FromTable:
         return f"the recording has no column {' or '.join(heads)}"
 
     def remedy(self, name: str) -> str:
-        """The column that it may have been meant by, if there is one."""
-        others = [head for head in self.columns if head not in self._signals]
+        """The column that may be meant by it, or all that no signal is read from, the nearest first."""
+        if near := did_you_mean(name, self.columns):
+            return near
+        _, *by_topic = spellings(self._signals[name])
+        unread = [head for head in self._heads if head not in self.cells and (by_topic or head[:1] != "/")]
+        if not unread:
+            return ""
+        sought = by_topic[-1].whole if by_topic and unread[0][:1] == "/" else name
+        others = nearest_first(sought, map(_as_array, unread))
         listed = ", ".join(f"`{head}`" for head in others[:MOST_LISTED])
-        renamed = f"a signal is read from the column of its name: rename one, of {listed}, or the signal"
-        return did_you_mean(name, self.columns) or (renamed if others else "")
+        more = f" and {len(others) - MOST_LISTED} more" if len(others) > MOST_LISTED else ""
+        columns, one = ("columns are", "one") if len(others) > 1 else ("column is", "it")
+        return f"its other {columns} {listed}{more}: rename {one} to `{name}`, or change the declaration"
 
     @property
     def beginning(self) -> Nanoseconds | None:
@@ -264,6 +271,12 @@ class FromTable:
             message,
             "a shorter array has empty cells at its end only; write `nan` for a missing measurement",
         )
+
+
+def _as_array(head: str) -> str:
+    """The array that `head` is an element of, as `scan[]`, or `head` itself."""
+    element = array_and_index(head)
+    return f"{element[0]}[]" if element else head
 
 
 def _source(path: Path, heads: set[str], signal: Signal) -> _Source | None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import errno
 import sys
 from pathlib import Path
 
@@ -35,6 +36,18 @@ def _port(text: str) -> int:
     return int(text)
 
 
+def _unserved(host: str, port: int, error: OSError) -> str:
+    """Why a page cannot be served, and what to do about it."""
+    match error.errno:
+        case errno.EADDRINUSE:
+            return f"another program uses port {port} of {host}: `ltlc serve --port 0` takes a free one"
+        case errno.EACCES:
+            return f"port {port} is for administrators: choose one from 1024 on, or `--port 0` for a free one"
+        case _:
+            why = error.strerror or error
+            return f"port {port} of {host} cannot be served: {why}; `--host` must be an address of this machine"
+
+
 def run(options: argparse.Namespace) -> int:
     """Serve the page until Ctrl-C."""
     source = Source("", "") if options.specification is None else read_source(options.specification)
@@ -52,7 +65,7 @@ def run(options: argparse.Namespace) -> int:
     try:
         server = Server(options.host, options.port, start)
     except OSError as error:
-        return unusable(f"port {options.port} of {options.host} cannot be served: {error.strerror or error}")
+        return unusable(_unserved(options.host, options.port, error))
     with server:
         try:
             if not is_local(options.host):

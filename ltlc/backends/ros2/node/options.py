@@ -123,12 +123,14 @@ def _refuse_unknown(node: Node) -> None:
     for name in given:
         if name in known or name.startswith("qos_overrides"):
             continue
-        complaint = (
-            f"no parameter is called {name}; there are {', '.join(DESCRIPTIONS)}"
+        unknown = f"no parameter is called {name}"
+        there_are = f"there are {', '.join(DESCRIPTIONS)}"
+        near = difflib.get_close_matches(name, DESCRIPTIONS, n=1, cutoff=0.8)
+        if near:
+            raise UnusableError(f"{unknown}; did you mean {near[0]}? {there_are}")
+        node.get_logger().warning(
+            f"{unknown}; {there_are}; it is assumed to be for another node"
         )
-        if difflib.get_close_matches(name, DESCRIPTIONS, cutoff=0.8):
-            raise UnusableError(complaint)
-        node.get_logger().warning(f"{complaint}; it is assumed to be for another node")
     if not isinstance(given["use_sim_time"].value, bool):
         value = given["use_sim_time"].value
         raise UnusableError(f"use_sim_time is {value!r}: it must be true or false")
