@@ -62,6 +62,15 @@ def states(found: dict[str, Any]) -> dict[str, str]:
 
 
 @pytest.mark.usefixtures("folder")
+def test_a_requirement_is_open_where_only_a_part_of_a_recording_was_judged(capsys: pytest.CaptureFixture[str]) -> None:
+    main(["run", "nav.ltlc", "drives/b.csv", "--until", "+0.5", "--results", "part.parquet", "-q"])
+    code, found = document(capsys, "nav.ltlc", "--results", "part.parquet")
+    assert (code, set(states(found).values())) == (3, {"open"})
+    [judged] = found["properties"][0]["results"]
+    assert judged["error"] == "only a part of it was judged"
+
+
+@pytest.mark.usefixtures("folder")
 def test_a_requirement_stands_as_the_worst_of_its_properties(capsys: pytest.CaptureFixture[str]) -> None:
     code, found = document(capsys, "nav.ltlc", "--results", "nav.parquet")
     assert code == 1

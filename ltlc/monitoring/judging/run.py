@@ -55,7 +55,8 @@ class RunReport:
     `trails`, one for each property, if they were asked for. `reading` and `judging` took so long. `definitions` say by
     topic who defines its messages. `blocks` judged the session, if anything could be read. The `specification` is what
     was judged by. The recording is what is in the `file`, if it is in one; its SHA-256 is taken for a document.
-    There is `evidence` if it was asked for and all could be read.
+    There is `evidence` if it was asked for and all could be read. It `is_part` if only the rows of some time were asked
+    for.
     """
 
     recording: str
@@ -70,6 +71,7 @@ class RunReport:
     specification: Source | None = None
     file: Path | None = None
     evidence: Document | None = None
+    is_part: bool = False
 
     @property
     def exit_code(self) -> int:
@@ -108,6 +110,7 @@ class RunReport:
             for each, track in zip(document["properties"], self.session.tracks, strict=True):
                 each.update(violations_report(self.session, track))
         document["is_damaged"] = self.is_damaged
+        document["is_part"] = self.is_part
         document["definitions"] = dict(self.definitions)
         document["diagnostics"] = self._diagnostics()
         document["provenance"] = self.provenance()
@@ -245,7 +248,8 @@ class Judge:
     def _made_of(self, path: Path) -> dict[str, Any]:
         """What a report says of what it was made of; what is opened in another way is in no file."""
         file = path if self.hashed and self.open is open_recording else None
-        return {"specification": self.specification.source, "file": file}
+        is_part = (self.reading.since, self.reading.until) != (None, None)
+        return {"specification": self.specification.source, "file": file, "is_part": is_part}
 
     @cached_property
     def signals(self) -> dict[str, Signal]:

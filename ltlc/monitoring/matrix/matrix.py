@@ -22,7 +22,7 @@ class State(Enum):
     NO_PROPERTY = "no property"
     NOT_RUN = "not run"
     OPEN = "open"
-    """Something is still owed, or never began, or a recording was not judged to its end."""
+    """Something is still owed, or never began, or a recording was not judged whole."""
     IDLE = "never triggered"
     HOLDS = "holds"
 
@@ -239,6 +239,7 @@ def _judged(
     recording: str, files: Sequence[Mapping[str, Any]], outcome: Outcome, found: PropertyOutcome, is_stale: bool
 ) -> Judged:
     decided, error = found.report["decided_at"], outcome.error
+    unread = "only a part of it was judged" if outcome.report.get("is_part") else None
     offset = None if decided is None else decided.get("offset")
     return Judged(
         recording,
@@ -247,7 +248,7 @@ def _judged(
         _triggered(found),
         offset,
         is_stale,
-        None if error is None else error["message"],
+        unread if error is None else error["message"],
     )
 
 
