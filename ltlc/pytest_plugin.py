@@ -87,7 +87,7 @@ class LtlcMonitor:
         return run.verdicts
 
     def finish(self) -> None:
-        """The run is over, as it is at the end of a test: fail that for what is violated, owed or never started."""
+        """The run is over, as at the end of a test: fail the test for what is violated, unmet or never started."""
         from ltlc.base.diagnostics import Severity
         from ltlc.base.render import full
 

@@ -117,11 +117,43 @@ def test_each_cell_draws_its_own_timelines(browser: chromium.Browser, frame: int
     browser.wait_until(f"return (() => {{ {painted} }})() > 5")
 
 
+@pytest.mark.parametrize("frame", [0, 1])
+def test_a_frame_holds_its_content_also_when_more_is_unfolded(browser: chromium.Browser, frame: int) -> None:
+    content = "return [document.documentElement.offsetHeight, innerHeight]"
+    enter(browser, frame)
+    browser.wait_until(f"return new Set((() => {{ {content} }})()).size === 1")
+    before, _ = browser.run(content)
+    browser.run("for (const each of document.querySelectorAll('details')) each.open = !each.open")
+    browser.wait_until(f"return document.documentElement.offsetHeight !== {before}")
+    browser.wait_until(f"return new Set((() => {{ {content} }})()).size === 1")
+    browser.run("for (const each of document.querySelectorAll('details')) each.open = !each.open")
+    browser.wait_until(f"return innerHeight === {before}")
+
+
+def test_scrolling_a_notebook_goes_on_over_timelines(browser: chromium.Browser) -> None:
+    enter(browser, 0)
+    browser.run("scrolled = 0")
+    browser.enter(None)
+    browser.run("scrollTo(0, scrollY + 10)")
+    browser.enter(0)
+    browser.wait_until("return scrolled > 0")
+
+
 def test_links_of_a_frame_stay_in_it(browser: chromium.Browser) -> None:
     enter(browser, 0)
     browser.run("document.querySelector('table.overview a').click()")
     assert browser.run("return location.href").startswith("about:srcdoc#recording-0-property-")
     assert browser.run("return timelines.length") == 2
+
+
+def test_a_link_in_a_frame_scrolls_the_notebook_to_where_it_leads(browser: chromium.Browser) -> None:
+    enter(browser, 0)
+    browser.enter(None)
+    browser.run("scrollTo(0, 0)")
+    browser.enter(0)
+    browser.run("document.querySelector('table.overview tr:last-child a').click()")
+    browser.enter(None)
+    browser.wait_until("return scrollY > 900")
 
 
 def test_a_frame_cannot_reach_the_notebook(browser: chromium.Browser) -> None:

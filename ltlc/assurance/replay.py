@@ -36,7 +36,7 @@ class Run(Generic[Event]):
 
 
 Id = bool | int | float | str
-"""What tells slices apart."""
+"""What distinguishes slices."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,7 +15,7 @@ from ltlc.compiler import Compiled
 from ltlc.runtime.documents import json_value
 
 MOST_RUNS, MOST_IN_ALL = 20, 2_000
-"""How many runs are told of a property, and of all together if that leaves one for each."""
+"""How many runs are described for a property, and for all together if that leaves one for each."""
 
 
 def told_runs(

@@ -175,7 +175,7 @@ class _SharedSession(Session):
                 self._timed[self._names[atom.name].ap_name()] = atom
 
     def runs(self, automata: Iterable[Any]) -> Runs | None:
-        """The words that are runs in time, as far as what `automata` read tells; None if all words are."""
+        """The words that are runs in time, as far as what `automata` read shows; None if all words are."""
         read = frozenset(self._timed).intersection(atom.ap_name() for automaton in automata for atom in automaton.ap())
         if read and read not in self._runs:
             unordered = ResetMachine(conjunction(self._timed[variable] for variable in sorted(read)))

@@ -38,7 +38,7 @@ MOST = 1000
 class Violation:
     """A property is violated at a moment, and `until` then; None if it still was when the run ended.
 
-    What was owed then was owed from the time `owed` on, which is that moment if nothing was; its episode had `opened`.
+    An obligation that was open then had been since `owed`, which is that moment if none was; its episode had `opened`.
     """
 
     moment: Moment

@@ -78,13 +78,13 @@ class Course:
 
     @property
     def open_since(self) -> Moment | None:
-        """Since when something has been owed; None if nothing is."""
+        """Since when an obligation has been open; None if none is."""
         if self.verdict is not Verdict.PRESUMABLY_VIOLATED:
             return None
         return Moment(self._since_step, self._since, by_time=self._since_by_time)
 
     def owe(self, step: int, time: int, *, by_time: bool = False) -> None:
-        """Something is owed from this moment on."""
+        """An obligation is open from this moment on."""
         self._since_step, self._since, self._since_by_time = step, time, by_time
 
     def hear(self, time: int, signals: Container[str]) -> None:
@@ -257,7 +257,7 @@ class Course:
         return values
 
     def _count_none(self, reason: str) -> None:
-        """A step is none."""
+        """Count a message that makes no step."""
         self._invalid_last = reason
         self.invalid_because[reason] += 1
 

@@ -23,7 +23,7 @@ from ltlc.runtime.times import Scale
 
 
 class ToldInstances(ToldSlices):
-    """The instances that the messages of `openings` opened, and what there is to tell.
+    """The instances that the messages of `openings` opened, and what to report of them.
 
     It stands before what judges them, and tells instead of that.
     """
@@ -33,7 +33,7 @@ class ToldInstances(ToldSlices):
 
     @property
     def _scale(self) -> Scale:
-        """Fine enough to tell the messages apart that are named."""
+        """Fine enough to distinguish the messages that are named."""
         violated = first_shown(self.ids.violated.items())
         named = [each.failure.opened for _, each in violated]
         named += [each.opened for each in self.owed()]

@@ -27,7 +27,7 @@ def junit(
 
     After these come `more`, and then `remarks` on all of it; `properties` are of all.
 
-    What is violated or still owed at the end fails; what never started is an error, and
+    What is violated or unmet at the end fails; what never started is an error, and
     so is what would hold if no message had been lost.
     """
     cases = [*(_case(session, track) for track in session.tracks), *more]

@@ -306,7 +306,7 @@ def counted(number: int, noun: str, nouns: str = "") -> str:
 
 
 def exit_code(verdicts: Sequence[Verdict], has_lost: bool = False) -> int:
-    """1 if a property is violated; 3 if one is owed or never started; else 0.
+    """1 if a property is violated; 3 if one is unmet or never started; otherwise 0.
 
     Nothing is well where messages have been lost, or were malformed.
     """

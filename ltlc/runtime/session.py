@@ -55,7 +55,7 @@ class Session:
     has_begun: whether some property has had its first step
     end: the last moment of the run; a timeout counts from its first step
     is_over: whether that is past: nothing more is taken
-    times: how a reader is told the times of the run
+    times: how the times of the run are shown
     zero: when the recording began, if the run began later
     absences: why nothing comes of signals or on topics, by name, if that is known
     """
@@ -125,7 +125,7 @@ class Session:
 
     @property
     def scale(self) -> Scale:
-        """How a reader is told the times of the run."""
+        """How the times of the run are shown to a reader."""
         if self.times is Times.ABSOLUTE:
             return Scale()
         # What begins at 0 has one time only.

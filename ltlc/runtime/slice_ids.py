@@ -85,7 +85,7 @@ class Ids:
     slices: those that are not decided
     violated, satisfied: the ids of the others
     forgotten: all others that came, if there is no limit; `births` counts slices
-    calm: the verdict if nothing is owed or violated
+    calm: the verdict if no obligation is open and nothing is violated
     messages: how many messages had an id; of others, `without_id` counts those that had
     none, `left_out` those of which the id found no place
     """

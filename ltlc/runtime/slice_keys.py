@@ -18,11 +18,11 @@ from ltlc.runtime.sampling import (
 )
 
 Id = bool | int | float | str
-"""What tells slices apart."""
+"""What distinguishes slices."""
 
 
 def id_of(value: Value) -> Id | None:
-    """A value as an id; NaN is none, and a number that is whole is an integer."""
+    """A value as an id; NaN is no id, and a whole number is an integer."""
     if value.__class__ is tuple:
         return bytes_text(bytes(map(int, value)))
     if value.__class__ is not float:

@@ -27,7 +27,7 @@ LACKS = " (its beginning may be missing)"
 
 @dataclass(frozen=True, slots=True)
 class Owed:
-    """Something is owed for an id, and for how long it can wait; None is for ever.
+    """An obligation is open for an id; how long it can wait, None without a limit.
 
     Of an instance, `opened` has its message first.
     """
@@ -45,7 +45,7 @@ def id_text(id_: Id) -> str:
 
 
 class ToldSlices:
-    """The slices of a `track` in a `session`, and what there is to tell of them.
+    """The slices of a `track` in a `session`, and what to report of them.
 
     `cut` says what slices it, `ids` has what is known of each; in one of the states
     `as_new` an id is forgotten.
@@ -70,7 +70,7 @@ class ToldSlices:
 
     @property
     def _scale(self) -> Scale:
-        """How a reader is told times."""
+        """How times are shown to a reader."""
         return self.session.scale
 
     def topics(self) -> frozenset[str]:
@@ -143,7 +143,7 @@ class ToldSlices:
                 yield self._figure(id_, each), json.dumps(self._line(id_, each))
 
     def listed(self) -> dict[str, str]:
-        """The ids that violate the property, and those for which something is owed."""
+        """The ids that violate the property, and those with an open obligation."""
         shown = first_shown(self.ids.violated.items())
         violated = [self._named(id_, each.failure.opened) for id_, each in shown]
         owed = [self._named(each.id, each.opened) for each in self.owed()]
@@ -153,7 +153,7 @@ class ToldSlices:
         }
 
     def _owed_in_all(self) -> int:
-        """For how many ids something is owed."""
+        """How many ids have an open obligation."""
         slices = self.ids.slices.values()
         return sum(one.open_since is not None for one in slices)
 
@@ -195,7 +195,7 @@ class ToldSlices:
             yield f"{messages_text(self.ids.left_out)} {reason} left out"
 
     def figure(self) -> str:
-        """What is told of the violations, each with its id."""
+        """What is reported of the violations, each with its id."""
         shown = list(first_shown(self.ids.violated.items()))
         texts = [self._figure(*each) for each in shown]
         if more := len(self.ids.violated) - len(shown):
@@ -255,7 +255,7 @@ def first_shown(
 
 
 def listed_text(told: Sequence[str], number: int) -> str:
-    """What is told of some of so many."""
+    """What is reported of some of so many."""
     more = f" and {number - len(told)} more" if number > len(told) else ""
     return f"{', '.join(told)}{more}"
 

@@ -69,7 +69,7 @@ class Instances:
 
 
 class OpenedSlices(ToldInstances, Slices):
-    """Slices that messages open, and what is told of these."""
+    """Slices that messages open, and what is reported of them."""
 
 
 class TickedOpenedSlices(ToldInstances, TickedSlices):

@@ -41,7 +41,7 @@ def seconds_text(time: int) -> str:
 
 
 class Times(Enum):
-    """How a reader is told times."""
+    """How times are shown to a reader."""
 
     OFFSET = "since the beginning of the recording"
     ABSOLUTE = "in full"
@@ -53,7 +53,7 @@ class Scale:
     """How times are written for a reader: since `zero`, or in full if that is None.
 
     A time since `zero` is rounded to that many `digits` after the point: milliseconds,
-    or as many as it takes to tell the times apart that are shown together (`among`).
+    or as many as it takes to distinguish the times that are shown together (`among`).
     With `has_clock`, the time of what went wrong is written in full, too.
     """
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class Observer(Protocol):
-    """Is told of what a property goes through until it is decided, as it happens."""
+    """Is notified of what happens to a property until it is decided."""
 
     def moved(
         self, track: Track, before: int, moment: Moment, change: Change | None
@@ -84,7 +84,7 @@ class Track(Course):
         return super()._change(before, step, time, values, by_time=by_time)
 
     def count_delay(self, delay: int) -> None:
-        """A verdict that time decided was told so much too late."""
+        """A verdict that time decided was reported late by so much."""
         self.delays += 1
         self.longest_delay = max(self.longest_delay, delay)
 

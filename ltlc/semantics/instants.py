@@ -113,7 +113,7 @@ def _once_each(word: tuple[Instant, ...]) -> At:
 
 
 def holds_at(atom: PastAtom, word: tuple[Instant, ...], n: int, session: Nanoseconds | None, at: At) -> bool:
-    """Whether `atom` holds at the instant n of `word`, of which `at` tells: its definition."""
+    """Whether `atom` holds at the instant n of `word`, which `at` describes: its definition."""
 
     def ago(k: int) -> Nanoseconds:
         return word[n].time - word[k].time

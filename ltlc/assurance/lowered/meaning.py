@@ -93,7 +93,7 @@ def _double(expression: e.Expression) -> x.Expression:
 
 
 def _exact(expression: e.Expression) -> x.Expression:
-    """The value of an expression that is a number: as a double, unless it may be an integer that is none."""
+    """The value of an expression that is a number: as a double, unless it may be an integer that no double equals."""
     found = value(expression)
     return found if found.type.scalar.is_wide else _double(expression)
 

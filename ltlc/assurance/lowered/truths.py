@@ -5,7 +5,8 @@ The machine need not say them as the specification does. These are all the rewri
 - `a > b` is `b < a`. Of numbers, `a <= b` is `not b < a`; and, or, not, and equality of booleans as in logic.
 - A comparison holds of no NaN. No number is more than infinity, or less than -infinity; each is equal to itself.
 - A result is NaN where an operand is and, for some primitives, by itself: the table of functions says for which.
-- Conversions that change no number are none: every number is a double, unless it may be an integer that is none.
+- Conversions that change no number are omitted: every number is a double, unless it may be an integer that no double
+  equals.
 - `x - c` is `x + (-c)` for a constant c, and `least(least(a, b), c)` is `least(a, b, c)`.
 - Where what is read is an integer of so many bits by its type, `q < 2.5` is `q <= 2`, and what is true of all these
   integers, or of none, is a constant.
@@ -194,7 +195,7 @@ class Truths:
 
 
 def _number(read: Expression) -> Expression:
-    """What is read: a number as a double, unless it may be an integer that is none."""
+    """What is read: a number as a double, unless it may be an integer that no double equals."""
     is_double = not read.type.is_number or read.type == DOUBLE or read.type.scalar.is_wide
     return read if is_double else Apply(P.TO_DOUBLE, (read,))
 

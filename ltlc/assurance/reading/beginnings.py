@@ -46,7 +46,7 @@ STATE = Assign(Variable("state"), Attribute("state"))
 _OWN = {"state": Constant(0), "verdict": Constant(Verdict.NOT_STARTED), "invalid": Constant(0)}
 _HAS_BEGUN = Apply("!=", (VERDICT, Constant(Verdict.NOT_STARTED)))
 INVALID = Assign(Attribute("invalid"), Apply("+", (Attribute("invalid"), Constant(1))))
-"""A step is counted that is none."""
+"""Counts a message that makes no step."""
 
 
 @dataclass

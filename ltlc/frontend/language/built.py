@@ -152,7 +152,7 @@ class Context:
         return next((other for other in arrivals if topics_of(other) == topics_of(signal)), signal)
 
     def news(self, signal: Signal, span: Span) -> Built:
-        """The timed atom that a message arrives, which the run tells as it tells the other atoms."""
+        """The timed atom that a message arrives, which the run reports like the other atoms."""
         return Built(self._arrival(timed.news(signal), signal, span), span)
 
     def age(self, signal: Signal, duration: Nanoseconds, span: Span, *, strictly: bool) -> Built:

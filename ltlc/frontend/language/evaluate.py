@@ -189,7 +189,7 @@ def _gone(checker: Checker, node: syntax.Node, key: syntax.Node) -> Value | None
 
 
 def _number(text: str) -> float:
-    """The double nearest to what `text` writes; an integer that is none stays exact, as far as messages have such."""
+    """The double nearest to what `text` writes; integers that no double equals stay exact if messages can have them."""
     double = float(text)
     return double_or_integer(int(text)) if text.isdigit() and double <= LARGEST else double
 

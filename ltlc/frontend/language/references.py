@@ -128,7 +128,7 @@ def is_unknown(checker: Checker, node: syntax.Node) -> bool:
 
 
 def unknown(checker: Checker, node: syntax.Reference, other: Value | None = None) -> None:
-    """Report that `node` is the name of nothing; what it is compared with may tell what was meant."""
+    """Report that `node` is not defined; what it is compared with may show what was meant."""
     name = node.name.text
     if name.lower() in _NO_NAMES:
         message = f"nothing called `{name}` is defined"

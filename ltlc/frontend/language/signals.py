@@ -114,9 +114,9 @@ SOURCES: dict[str, Callable[[str], dict[str, tuple[PathStep, ...]]]] = {
         "velocity.angular": ("twist", Parallel("name", name), "angular"),
     },
 }
-"""The message types that tell the ground truth of an object, and where in them each quantity of `name` is.
+"""The message types that give the ground truth of an object, and where in them each quantity of `name` is.
 
-A velocity that a source does not tell is the slope of the position.
+A velocity that a source does not give is the slope of the position.
 """
 
 SIMULATORS = {

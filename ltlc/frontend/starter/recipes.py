@@ -17,8 +17,8 @@ from ltlc.specification.wire import PRIMITIVES, Kind
 class Rule:
     """A property: what its label ends in, English, and its text with the signals in braces, `{any}` one of the topic.
 
-    A `?` in both is a number that recordings tell. A rule that is `only_offered` where nothing was measured depends so
-    much on the robot that it is written as a comment. A limit of `beyond` or more says nothing.
+    A `?` in both is a number that is measured in recordings. A rule that is `only_offered` where nothing was measured
+    depends so much on the robot that it is written as a comment. A limit of `beyond` or more says nothing.
     """
 
     label: str

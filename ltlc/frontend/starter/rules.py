@@ -123,7 +123,7 @@ class Subject:
         return Line("rate", english, text)
 
     def _judged(self, rule: Rule, found: Values) -> Iterator[Line]:
-        """A rule, if the recording does not contradict it; without a number that it tells, only offered."""
+        """A rule, if the recording does not contradict it; without a number from it, only offered."""
         is_known = found.count >= (LEAST_COUNT if rule.only_offered else 1)
         if "?" not in rule.text:
             held = is_known and not found.most

@@ -24,7 +24,7 @@ class Word(Node):
 
 @dataclass(frozen=True, slots=True)
 class NumberLiteral(Node):
-    """A number; `text` tells an integer from a decimal fraction."""
+    """A number; `text` distinguishes an integer from a decimal fraction."""
 
     text: str
 

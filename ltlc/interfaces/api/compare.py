@@ -106,7 +106,7 @@ def compare(
     `specification` is a text if it is a `str`, a file if it is a `pathlib.Path`. `ltl` is a list of formulas in
     Spot's syntax, or the path of a file of them. `encodings` are names, of those of ltlc and those in
     `encoding_files`, or encodings; by default the four of the language and all in the files. `recordings` are CSV or
-    JSONL files. `budget` is limits for each translation and each question; `watch` is told how far the work is.
+    JSONL files. `budget` is limits for each translation and each question; `watch` is called with the progress.
 
     Raises UnusableInput, SpotMissing, and Contradiction if the automata and the reference interpreter disagree.
     """

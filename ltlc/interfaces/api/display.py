@@ -62,11 +62,22 @@ def _verdict(session: Session, track: Track) -> tuple[str, ...]:
     return printable(track.property.label), VERDICTS[track.verdict], at, remarks
 
 
+_ON_LOAD = """const frame = this;
+window.addEventListener("message", (event) => {
+  if (event.source === frame.contentWindow && event.data > 0) frame.style.height = `${event.data}px`;
+});
+const scrolled = () => frame.contentWindow?.postMessage("scrolled", "*");
+window.addEventListener("scroll", scrolled, { capture: true, passive: true });
+frame.contentWindow.postMessage("height", "*");
+"""
+"""What the notebook does for a frame, with `frame.js` in it; where scripts are off, the frame keeps its height."""
+
+
 def _frame(page: str) -> str:
-    style = "width: 100%; height: 40em; border: 1px solid #8888; resize: vertical"
+    style = "box-sizing: content-box; width: calc(100% - 2px); height: 40em; border: 1px solid #8888; resize: vertical"
     return (
         f'<iframe sandbox="allow-scripts" title="verdicts over the signals" style="{style}" '
-        f'srcdoc="{escape(page)}"></iframe>\n'
+        f'onload="{escape(_ON_LOAD)}" srcdoc="{escape(page)}"></iframe>\n'
     )
 
 

@@ -157,7 +157,7 @@ class LiveRun:
         return [] if self._by_rows is None else violations_of(self._by_rows.session)
 
     def finish(self) -> Run:
-        """The run is over: what it has shown, and what is still owed."""
+        """The run is over: what it has shown, and which obligations are still open."""
         if self._run is None:
             rows = self._by_rows or self._begin(self._told or {})
             session = rows.session

@@ -44,7 +44,7 @@ def _kind(value: Value) -> str:
 
 
 def _unit(document: Document, node: syntax.Reference) -> str:
-    """The unit of a primitive; what a message tells has that in which it is published."""
+    """The unit of a primitive; a value from a message has the unit in which it is published."""
     steps = [step.text for step in node.steps if isinstance(step, syntax.Word)]
     found = unit(steps) if document.is_thing(node.name.text) else ""
     return f", in {found}" if found else ""

@@ -78,7 +78,7 @@ Variables = Mapping[str, Span]
 
 
 def words(tree: syntax.SyntaxTree, is_constant: Callable[[syntax.Reference], bool]) -> list[Word]:
-    """The names in `tree` in the order of the text; `is_constant` tells the constants of messages from other names."""
+    """The names in `tree` in the order of the text; `is_constant`: whether a name is a constant of messages."""
     models = [command for command in tree.commands if isinstance(command, syntax.Model)]
     attributes = {m.name.text: {a.name.text for a in m.attributes} - set(PRIMITIVES) for m in models}
     finder = _Finder(attributes, is_constant)

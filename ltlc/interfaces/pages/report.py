@@ -113,12 +113,13 @@ class PageReport:
         return {"facts": _facts(run), "cells": cells, "cards": cards, "left_out": left_out}
 
     def html(self, *, is_framed: bool = False) -> str:
-        """The page; if it `is_framed`, for the `srcdoc` of an `iframe`, so that its links stay there."""
+        """The page; if it `is_framed`, for the `srcdoc` of an `iframe`: links stay in it, and it reports its height."""
         here = files(__package__)
         cells = [cell for recording in self._recordings for cell in recording["cells"]]
         counts = Counter(cell["verdict"] for cell in cells)
         name = printable(PurePath(self._specification.source.name).name)
         count = len(self._recordings)
+        scripts = (*_SCRIPTS, "frame.js") if is_framed else _SCRIPTS
         about = PurePath(self._recordings[0]["name"]).name if count == 1 else f"{count} recordings"
         return template(__package__, "template.html.jinja", escape=True).render(
             version=__version__,
@@ -130,7 +131,7 @@ class PageReport:
             recordings=self._recordings,
             data=self._data.as_json(),
             style=(here / "page.css").read_text(encoding="utf-8"),
-            script="\n".join((here / name).read_text(encoding="utf-8") for name in _SCRIPTS),
+            script="\n".join((here / name).read_text(encoding="utf-8") for name in scripts),
         )
 
     def _card(self, run: _Run, place: int, link: str) -> dict[str, Any]:

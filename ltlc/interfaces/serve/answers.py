@@ -100,7 +100,7 @@ def _explain(question: Question) -> dict[str, Any]:
 
 
 def _compare(question: Question) -> dict[str, Any]:
-    """A property under each encoding, with the shortest finite runs that tell them apart."""
+    """A property under each encoding, with the shortest finite runs that distinguish them."""
     specification = replace(question.specification, properties=(question.chosen,))
     asked = questions_of(specification, list(ENCODINGS.values()))
     (found,) = document(answer(asked, OF_A_COMPARISON, (Runs.FINITE,)))["properties"]

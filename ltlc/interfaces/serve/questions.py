@@ -52,7 +52,7 @@ class Question:
 
     @property
     def analyses(self) -> bool:
-        """Whether the analyses are asked for, beside what is told at once."""
+        """Whether the analyses are asked for, besides what is reported at once."""
         return self._get("analyses", bool, False)
 
     @property

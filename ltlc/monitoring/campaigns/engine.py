@@ -52,7 +52,7 @@ def on_engine(address: str, jobs: int | None) -> Iterator[Workers]:
         message = "`--engine` needs Dask, which is not installed"
         raise EngineError(address, message, command("campaigns")) from None
     for name in [each for each in logging.root.manager.loggerDict if each.startswith("distributed")]:
-        logging.getLogger(name).setLevel(logging.CRITICAL)  # what is lost is told by ourselves
+        logging.getLogger(name).setLevel(logging.CRITICAL)  # we report what is lost ourselves
     with dask.config.set(_SETTINGS), ExitStack() as started:
         try:
             to = address

@@ -150,7 +150,7 @@ def place_of(path: Path) -> Location:
     files = sorted(each for each in path.rglob("*") if each.is_file()) if path.is_dir() else [path]
     try:
         states = [(str(each.relative_to(path)), each.stat()) for each in files]
-    except OSError:  # gone, or never there: what is wrong is told when it is judged
+    except OSError:  # gone, or never there: reported when it is judged
         return Location(str(path))
     size = sum(state.st_size for _, state in states)
     if path.is_dir():

@@ -220,7 +220,7 @@ def _damaged(path: Path, what: str) -> ResultsError:
 
 
 def digest(parts: Iterable[str]) -> str:
-    """What tells whether two campaigns judged with the same specification, settings and version of ltlc."""
+    """What two campaigns share if they judged with the same specification, settings and version of ltlc."""
     return sha256(json.dumps([__version__, *parts]).encode()).hexdigest()
 
 
@@ -237,7 +237,7 @@ def _table(rows: Iterable[Row]) -> Table:
 
 
 def _journaled(journal: Journal) -> Table:
-    """What arrived after the table was written last; what is none of its rows is passed over."""
+    """What arrived after the table was written last; what is not one of its rows is skipped."""
     import pyarrow
 
     tables = [_table(())]

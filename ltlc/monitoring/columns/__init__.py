@@ -10,8 +10,8 @@ every track, of the samples and of the ticks is then what it would have been, so
 
 What is computed for all steps at once are the lowered expressions, of which emitted code is printed, each function by
 its row in numpy (`functions`; what numpy would round otherwise, such as a norm, number by number). Numbers are doubles
-there, and a block with integers that are none is refused. The least and the greatest of a piece of a column decide
-most comparisons.
+there, and a block with integers that are not doubles is refused. The least and the greatest of a piece of a column
+decide most comparisons.
 
 Machine and open scopes make one table (`machine`, `tables`), which takes two to eight letters at a time, and none
 where they repeat (`follow`; `groups` says what happened). Properties with equal tables are stepped together, their

@@ -57,7 +57,7 @@ class Elements:
 
     @property
     def until(self) -> int:
-        """The time up to which there is none else."""
+        """The time up to which there are no others."""
         return int(self.shared.columns.times[self.end - 1])
 
     @cached_property

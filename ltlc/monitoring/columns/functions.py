@@ -1,8 +1,8 @@
 """The table of functions in numpy: each primitive at all steps at once, the same values to the bit.
 
-Numbers are doubles here: `values.py` refuses integers that are none. So every comparison is exact, and conversions
-leave a column as it is. What numpy has not, or rounds differently, is what Python has; a property with a primitive that
-has no row goes row by row.
+Numbers are doubles here: `values.py` refuses integers that are not doubles. So every comparison is exact, and
+conversions leave a column as it is. What numpy has not, or rounds differently, is what Python has; a property with a
+primitive that has no row goes row by row.
 """
 
 from __future__ import annotations

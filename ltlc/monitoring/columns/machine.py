@@ -47,7 +47,7 @@ class Control(NamedTuple):
     as_new: frozenset[int]
 
     def asked(self, number: int) -> Question | None:
-        """What a decision asks of a letter; None if it asks whether a clock is late of which letters do not tell."""
+        """What a decision asks of a letter; None if it asks about a clock whose lateness letters do not give."""
         if number < len(self.questions):
             return self.questions[number]
         clock = self.clocks[number - len(self.questions)]

@@ -163,7 +163,7 @@ class BySlices:
         known.next[numbers] = np.minimum.reduce([due.take(numbers) for due in known.dues])
 
     def _number(self, taken: Taken, runs: Runs) -> None:
-        """Count the messages that are steps, and those that are none."""
+        """Count the messages that make a step, and those that do not."""
         messages, track = taken.messages, self.slices.track
         late = self._late(taken, runs)
         if messages.invalid is None and not messages.early and not len(late):
@@ -285,7 +285,7 @@ class BySlices:
             track.verdict = Verdict.PRESUMABLY_SATISFIED
 
     def _since(self, taken: Taken) -> Moment | None:
-        """From when on something has been owed in some slice, whichever; None if that is since before."""
+        """Since when an obligation has been open in any slice; None if since before."""
         opened = np.concatenate([np.empty(0, np.int64), *taken.opened])
         if len(opened) < self._owed:
             return None

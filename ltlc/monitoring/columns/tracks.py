@@ -97,7 +97,7 @@ def values_at(track: Course, steps: Steps, step: int) -> list[object]:
 
 
 def count_invalid(track: Track, found: Stretch) -> None:
-    """Count the steps that are none, for their reasons, in the order in which these came up."""
+    """Count the messages that make no step by reason, in the order in which the reasons came up."""
     if found.numbers is None:
         return
     mask = np.ones(len(found.steps), np.bool_)
@@ -113,7 +113,7 @@ def count_invalid(track: Track, found: Stretch) -> None:
 
 
 def _reasons(track: Track, steps: Steps, invalid: Places) -> Iterator[tuple[str, Places]]:
-    """Why the steps `invalid` are none."""
+    """Why the messages `invalid` make no step."""
     inputs = track.property.inputs
     columns = [steps.column(wanted) for wanted in inputs if not steps.is_array(wanted)]
     masks = [np.isnan(column[invalid]) for column in columns if column.dtype == np.float64]

@@ -75,7 +75,7 @@ class RunReport:
 
     @property
     def exit_code(self) -> int:
-        """0 all hold; 1 one is violated; 2 unusable or damaged; 3 none violated, but one is owed or never started."""
+        """0 all hold; 1 one is violated; 2 unusable or damaged; 3 none violated, but one is unmet or never started."""
         if self.session is None or self.is_damaged:
             return 2
         left_out = any(slices.left_out for slices in self.session.sliced)
@@ -204,7 +204,7 @@ class Judge:
     evidence: Evidence | None = None
 
     def judge(self, path: Path, watchers: Sequence[Watcher] = ()) -> RunReport:
-        """What the recording at `path` shows. `watchers` are told what was judged, block by block."""
+        """What the recording at `path` shows. `watchers` get what was judged, block by block."""
         try:
             recording = self.open(path, self.signals, self.reading)
         except RecordingError as error:

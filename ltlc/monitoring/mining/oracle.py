@@ -55,7 +55,7 @@ class Answer:
 
     @property
     def failing(self) -> Track:
-        """The property that fails: one that is violated, the first, or else one that is owed."""
+        """The property that fails: the first that is violated, otherwise one with an open obligation."""
         failing = [t for t in self.tracks if not t.verdict.holds and t.verdict is not Verdict.NOT_STARTED]
         violated = [track for track in failing if track.decided_at is not None]
         return min(violated, key=lambda t: t.decided_at.time if t.decided_at else 0) if violated else failing[0]

@@ -150,7 +150,7 @@ class _File:
                     pass
             if kept.type.is_number:
                 right = int(right) if kept.type.scalar.is_integer else float(right)
-            if repr(found) != repr(right):  # which tells true from 1, and -0.0 from 0.0
+            if repr(found) != repr(right):  # which distinguishes true from 1, and -0.0 from 0.0
                 raise NotUnderstoodError(f"`{kept.name}` does not begin as it is defined")
 
 
