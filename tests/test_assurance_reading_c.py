@@ -314,8 +314,8 @@ def test_a_build_refuses_c_that_is_not_its_monitor(
         files = emit(*given)
         return with_source(files, files.source.replace("> 1.0", ">= 1.0"))
 
-    monkeypatch.setattr("ltlc.interfaces.building.targets.c.emit", wrongly)
-    monkeypatch.setattr("ltlc.assurance.programs.compiler", lambda: None)
+    monkeypatch.setattr("ltlc.backends.c.emit", wrongly)
+    monkeypatch.setattr("ltlc.assurance.c_programs.compiler", lambda: None)
     (tmp_path / "w.txt").write_text("never robot.velocity > 1\n")
     assert cli.main(["build", str(tmp_path / "w.txt"), "--target", "c", "-o", str(tmp_path / "w.c")]) == 1
     assert "error[LTL707]" in capsys.readouterr().err

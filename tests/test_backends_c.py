@@ -465,7 +465,7 @@ def test_a_build_writes_three_files_that_were_replayed(tmp_path: Path, capsys: p
 def test_without_a_compiler_it_is_said_that_nothing_was_replayed(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("ltlc.assurance.programs.compiler", lambda: None)
+    monkeypatch.setattr("ltlc.assurance.c_programs.compiler", lambda: None)
     (tmp_path / "w.txt").write_text("never robot.velocity > 1\n")
     assert cli.main(["build", str(tmp_path / "w.txt"), "--target", "c", "-o", str(tmp_path / "w.c")]) == 0
     assert "code NOT replayed: no C compiler installed, read back" in capsys.readouterr().out

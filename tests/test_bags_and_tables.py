@@ -70,9 +70,9 @@ def table(path: Path, sent: Sequence[Sent]) -> Path:
 
 
 def outcome(path: Path, judged_by: tuple[Any, Any] | None = None) -> Any:
-    """All that is reported, but the name of the recording, and who defines its messages."""
+    """All that is reported, but the name and digest of the recording, and who defines its messages."""
     document = json.loads(run(*(judged_by or compiled()), path, keep_verdicts=True).json())
-    return {name: value for name, value in document.items() if name not in ("recording", "definitions")}
+    return {name: value for name, value in document.items() if name not in ("recording", "definitions", "provenance")}
 
 
 @pytest.mark.parametrize("seed", range(len(FORMS)))

@@ -180,7 +180,7 @@ def test_spot_running_out_of_memory_is_the_limit_of_memory() -> None:
 
 
 def test_spot_running_out_of_stack_is_nesting() -> None:
-    assert limit_of(overflow_spots_stack, Budget(60)) is Limit.NESTING
+    assert limit_of(overflow_spots_stack, Budget(60, 4096)) is Limit.NESTING
 
 
 def test_what_spot_refuses_is_a_limit_of_the_engine_in_its_own_words() -> None:

@@ -726,7 +726,7 @@ line 5 of props.txt:
     Failing state:
       on: false
     Because:
-      more than 1999999999 ns since the beginning: true
+      more than 1.999999999 s since the beginning: true
     Unmet since +0 s (step 0): eventually on within 1.999999999 s
     At +2 s (after step 1).
     1 violation, at an instant

@@ -203,4 +203,5 @@ def outcome(compiled: Any, specified: Any, path: Path, keep_verdicts: bool) -> A
     document = json.loads(run(compiled, specified, path, keep_verdicts).json())
     for each in document["properties"]:  # JSON lines have no column of a silent topic, a bag has the topic
         each["waiting_for"] = len(each.get("waiting_for") or ())
-    return {name: value for name, value in document.items() if name not in ("recording", "definitions", "diagnostics")}
+    of_the_file = ("recording", "definitions", "diagnostics", "provenance")
+    return {name: value for name, value in document.items() if name not in of_the_file}

@@ -49,7 +49,8 @@ class Openings:
             "due",
             *(each.due for each in of.clocks),
         }
-        has_more = of.events or of.excused or of.ages or known != vars(monitor).keys()
+        has_more = of.kept or of.events or of.excused or of.ages
+        has_more = has_more or known != vars(monitor).keys()
         is_open = all(not each.inner and each.closes is None for each in of.scopes)
         is_simple = len(of.clocks) == 1 and is_open and not has_more
         return forked(monitor) if is_simple else None
