@@ -49,10 +49,10 @@ class Openings:
             "due",
             *(each.due for each in of.clocks),
         }
-        has_more = of.kept or of.events or of.excused or of.ages
-        has_more = has_more or known != vars(monitor).keys()
+        has_more = bool(of.kept or of.events or of.excused or of.ages)
         is_open = all(not each.inner and each.closes is None for each in of.scopes)
-        is_simple = len(of.clocks) == 1 and is_open and not has_more
+        has_only = known == vars(monitor).keys() and not has_more
+        is_simple = len(of.clocks) == 1 and is_open and has_only
         return forked(monitor) if is_simple else None
 
     def changed(
