@@ -16,8 +16,9 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
-from ltlc.assurance.evidence.document import Claim, Document, File, Head, Line, StatedAtom, digest, printed
+from ltlc.assurance.evidence.document import Claim, Document, Head, Line, StatedAtom, digest, printed
 from ltlc.assurance.evidence.judge import refusal
+from ltlc.base.provenance import FileDigest
 from ltlc.semantics.certificate_text import to_text
 from ltlc.semantics.ltl import And, Atom
 from ltlc.semantics.properties import Always, Eventually, Implies, Now, Within
@@ -66,7 +67,7 @@ def main(count: int) -> None:
     until = found[-1].time + SECOND
     atoms = (StatedAtom("near", {}), StatedAtom("stopped", {}))
     claim = Claim("response", "response", atoms, 0, found, until, Verdict.PRESUMABLY_SATISFIED, until)
-    file = File("run.mcap", 1, "0" * 64)
+    file = FileDigest("run.mcap", 1, "0" * 64)
     text = printed(Document(Head("1", ("props.txt", "0" * 64), digest(certificates), (file,)), (claim,)))
     with tempfile.TemporaryDirectory() as folder:
         names = [Path(folder) / name for name in ("certificates", "evidence")]

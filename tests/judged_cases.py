@@ -20,8 +20,9 @@ from typing import NamedTuple
 from test_semantics_certificate_text import entry
 from timed import Draw, ordinary_atoms
 
-from ltlc.assurance.evidence.document import Claim, Document, File, Head, Line, StatedAtom, Summed, digest, printed
+from ltlc.assurance.evidence.document import Claim, Document, Head, Line, StatedAtom, Summed, digest, printed
 from ltlc.assurance.evidence.judge import refusal
+from ltlc.base.provenance import FileDigest
 from ltlc.semantics.alphabet import Alphabet, Group
 from ltlc.semantics.certificate_reader import UnreadableError, parse
 from ltlc.semantics.certificate_text import Entry, to_text
@@ -98,7 +99,7 @@ def cases(seeds: Iterable[int] = range(PROPERTIES), claims: int = CLAIMS) -> Ite
 
 def evidence(claims: Iterable[Claim], certificates: str) -> str:
     """The document with these claims."""
-    file = File("run.mcap", 1, "0" * 64)
+    file = FileDigest("run.mcap", 1, "0" * 64)
     return printed(Document(Head("1.0", ("props.txt", "0" * 64), digest(certificates), (file,)), tuple(claims)))
 
 

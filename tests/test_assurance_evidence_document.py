@@ -10,7 +10,6 @@ from ltlc.assurance.evidence.document import (
     END,
     Claim,
     Document,
-    File,
     Head,
     Line,
     NotCovered,
@@ -24,6 +23,7 @@ from ltlc.assurance.evidence.document import (
     printed,
     summed,
 )
+from ltlc.base.provenance import FileDigest
 from ltlc.semantics.verdicts import Verdict
 
 NAMES = st.text(st.characters(exclude_categories=["C", "Z"]), min_size=1, max_size=8)
@@ -51,7 +51,7 @@ def claims(draw: st.DrawFn) -> Claim:
 
 HEADS = st.builds(
     Head, NAMES, st.tuples(NAMES, HEX), HEX,
-    st.lists(st.builds(File, NAMES, TIMES, HEX), min_size=1, max_size=3).map(tuple),
+    st.lists(st.builds(FileDigest, NAMES, TIMES, HEX), min_size=1, max_size=3).map(tuple),
     st.lists(st.tuples(NAMES, HEX), max_size=2).map(tuple),
     st.none() | st.floats(1e-3, 1e6).map(repr), st.none() | TIMES, st.booleans(), st.none() | TIMES, st.none() | TIMES,
 )  # fmt: skip
@@ -61,7 +61,13 @@ DOCUMENTS = st.builds(
 
 EXAMPLE = printed(
     Document(
-        Head("1.0.0 (1f3a5c7e9b2d)", ("props.txt", "a" * 64), "b" * 64, (File("run.mcap", 300, "c" * 64),), rate="5.0"),
+        Head(
+            "1.0.0 (1f3a5c7e9b2d)",
+            ("props.txt", "a" * 64),
+            "b" * 64,
+            (FileDigest("run.mcap", 300, "c" * 64),),
+            rate="5.0",
+        ),
         (
             Claim(
                 "slow",
@@ -136,7 +142,7 @@ def test_a_document_that_is_cut_off_is_refused(cut: int) -> None:
 
 
 def test_a_name_that_does_not_fit_on_a_line_cannot_be_written() -> None:
-    head = Head("1", ("a\nb", "a" * 64), "b" * 64, (File("run.mcap", 300, "c" * 64),))
+    head = Head("1", ("a\nb", "a" * 64), "b" * 64, (FileDigest("run.mcap", 300, "c" * 64),))
     with pytest.raises(ValueError, match="does not fit"):
         printed(Document(head, ()))
 

@@ -13,6 +13,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from ltlc.base.provenance import FileDigest
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.verdicts import Verdict
 
@@ -21,14 +22,6 @@ END = "end sha256 "
 
 Data = dict[str, object]
 """The condition of an atom, as JSON has it; see `conditions`."""
-
-
-class File(NamedTuple):
-    """A file that was read: its name, how many bytes it has, and their SHA-256 in hexadecimal."""
-
-    name: str
-    size: int
-    sha256: str
 
 
 class Line(NamedTuple):
@@ -66,7 +59,7 @@ class Head:
     version: str
     specification: tuple[str, str]
     certificates: str
-    recordings: tuple[File, ...]
+    recordings: tuple[FileDigest, ...]
     definitions: tuple[tuple[str, str], ...] = ()
     rate: str | None = None
     timeout: Nanoseconds | None = None
@@ -167,7 +160,7 @@ def _head_lines(head: Head) -> Iterator[str]:
     yield f"ltlc {head.version}"
     yield f"specification {name} sha256 {of_specification}"
     yield f"certificates sha256 {head.certificates}"
-    yield from (f"recording {file.name} {file.size} sha256 {file.sha256}" for file in head.recordings)
+    yield from (f"recording {file.name} {file.bytes} sha256 {file.sha256}" for file in head.recordings)
     yield from (f"definition {type_} sha256 {sha256}" for type_, sha256 in head.definitions)
     if head.rate is not None:
         yield f"rate {head.rate}"
@@ -297,7 +290,7 @@ class _Reader:
         name, of_specification = self._need(f"specification {_SOME} sha256 {_HEX}", "the specification")
         (certificates,) = self._need(f"certificates sha256 {_HEX}", "the SHA-256 of the certificates")
         files = self._all(f"recording {_SOME} {_TIME} sha256 {_HEX}")
-        recordings = tuple(File(name, int(size), sha256) for name, size, sha256 in files)
+        recordings = tuple(FileDigest(name, int(size), sha256) for name, size, sha256 in files)
         if not recordings:
             self._need("recording", "a file of the recording")
         definitions = tuple((type_, sha256) for type_, sha256 in self._all(rf"definition (\S+) sha256 {_HEX}"))

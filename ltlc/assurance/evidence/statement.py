@@ -13,8 +13,9 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
-from ltlc.assurance.evidence.document import Claim, Document, File, NotCovered
+from ltlc.assurance.evidence.document import Claim, Document, NotCovered
 from ltlc.assurance.evidence.outcomes import CheckedClaim
+from ltlc.base.provenance import FileDigest
 
 TYPE = "https://in-toto.io/Statement/v1"
 PREDICATE = "https://in-toto.io/attestation/test-result/v0.1"
@@ -33,19 +34,19 @@ Result = tuple[Document, Sequence[CheckedClaim]]
 """The evidence of one recording, and what the checks have found of each property."""
 
 
-def evidence_file(path: Path, content: bytes) -> File:
+def evidence_file(path: Path, content: bytes) -> FileDigest:
     """How a file of evidence is named."""
-    return File(path.name, len(content), sha256(content).hexdigest())
+    return FileDigest(path.name, len(content), sha256(content).hexdigest())
 
 
-def statements(evidence: File, results: Iterable[Result]) -> str:
+def statements(evidence: FileDigest, results: Iterable[Result]) -> str:
     """A statement for each recording, one a line, as in-toto has bundles; all checks must have accepted all claims."""
     return "".join(
         f"{json.dumps(statement(evidence, *each), ensure_ascii=False, allow_nan=False)}\n" for each in results
     )
 
 
-def statement(evidence: File, document: Document, checked: Sequence[CheckedClaim]) -> dict[str, Any]:
+def statement(evidence: FileDigest, document: Document, checked: Sequence[CheckedClaim]) -> dict[str, Any]:
     """The statement about one recording. What is still owed, never began or is not covered has not passed."""
     head, of = document.head, [each.of for each in checked]
     claims = [each for each in of if isinstance(each, Claim)]

@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from ltlc.assurance.evidence.document import Claim, Document, File, NotCovered, Summed
+from ltlc.assurance.evidence.document import Claim, Document, NotCovered, Summed
 from ltlc.assurance.evidence.outcomes import Check, CheckedClaim
 from ltlc.assurance.evidence.statement import Result, State
 from ltlc.assurance.evidence.words import in_words, settings_in_words
 from ltlc.backends.templates import template
+from ltlc.base.provenance import FileDigest
 from ltlc.runtime.reports import printable
 from ltlc.runtime.times import seconds_text
 from ltlc.semantics.verdicts import Verdict
@@ -35,7 +36,7 @@ CHECKED = {
 
 
 def page(
-    evidence: File,
+    evidence: FileDigest,
     results: Sequence[Result],
     state: State,
     requirements: Mapping[str, str],

@@ -9,7 +9,8 @@ from os import SEEK_END
 from pathlib import Path
 from typing import Self
 
-from ltlc.assurance.evidence.document import HEADER, File, UnreadableEvidence, parsed, printed
+from ltlc.assurance.evidence.document import HEADER, UnreadableEvidence, parsed, printed
+from ltlc.base.provenance import FileDigest
 from ltlc.monitoring.campaigns.places import Location, is_address
 from ltlc.monitoring.judging.evidence import Digests, Evidence
 
@@ -97,7 +98,7 @@ def _writing() -> Iterator[None]:
         raise BundleError(error) from None
 
 
-def _documents(data: bytes, evidence: Evidence) -> Iterator[tuple[tuple[File, ...], str]]:
+def _documents(data: bytes, evidence: Evidence) -> Iterator[tuple[tuple[FileDigest, ...], str]]:
     """The whole documents in a file that are by the same `evidence`, with the files that they are of."""
     first = f"{HEADER}\n"
     for part in data.decode("utf-8", errors="replace").split(first)[1:]:

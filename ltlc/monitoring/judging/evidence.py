@@ -9,11 +9,11 @@ from pathlib import Path, PurePath
 
 from ltlc.assurance.evidence.conditions import NotCoveredError, stated_atoms
 from ltlc.assurance.evidence.definitions import digests
-from ltlc.assurance.evidence.document import Claim, Document, File, Head, NotCovered, StatedAtom, digest
+from ltlc.assurance.evidence.document import Claim, Document, Head, NotCovered, StatedAtom, digest
 from ltlc.base.codes import diagnostic
 from ltlc.base.diagnostics import Diagnostic
 from ltlc.base.limits import Budget
-from ltlc.base.provenance import digest_of
+from ltlc.base.provenance import FileDigest, digest_of
 from ltlc.base.revision import version_text
 from ltlc.base.source import Source
 from ltlc.compiler import Compiled
@@ -55,7 +55,7 @@ class Evidence:
         return Digests(path)
 
     def document(
-        self, session: Session, part: Part, recording: Recording, reading: ReadOptions, files: Iterable[File]
+        self, session: Session, part: Part, recording: Recording, reading: ReadOptions, files: Iterable[FileDigest]
     ) -> Document:
         """The evidence of a run that has been judged, of a `part` of a recording with these `files`."""
         return _Judged(session, part, recording, reading).document(self, files)
@@ -98,17 +98,12 @@ class Digests:
 
     def __init__(self, path: Path) -> None:
         self._pool = ThreadPoolExecutor(1)
-        self._files: list[Future[File]] = [self._pool.submit(_file, name, at) for name, at in files_of(path)]
+        self._files: list[Future[FileDigest]] = [self._pool.submit(digest_of, at, name) for name, at in files_of(path)]
         self._pool.shutdown(wait=False)
 
-    def files(self) -> tuple[File, ...]:
+    def files(self) -> tuple[FileDigest, ...]:
         """The files, as soon as their digests are known. Raises OSError."""
         return tuple(each.result() for each in self._files)
-
-
-def _file(name: str, path: Path) -> File:
-    found = digest_of(path, name)
-    return File(name, found.bytes, found.sha256)
 
 
 @dataclass(frozen=True)
@@ -120,7 +115,7 @@ class _Judged:
     recording: Recording
     reading: ReadOptions
 
-    def document(self, evidence: Evidence, files: Iterable[File]) -> Document:
+    def document(self, evidence: Evidence, files: Iterable[FileDigest]) -> Document:
         """The evidence of it."""
         properties = tuple(self._properties(evidence))
         head = Head(
