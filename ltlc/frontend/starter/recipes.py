@@ -170,7 +170,7 @@ def recipe_for(message: str, types: MessageTypes) -> Recipe:
 
 def _of_fields(message: str, types: MessageTypes) -> Recipe:
     every = values_of(message, types)
-    others = [(path, kind) for path, kind in every if not path.endswith("sec") and not _are_bytes(message, path, types)]
+    others = [(path, kind) for path, kind in every if not _is_aside(path) and not _are_bytes(message, path, types)]
     values = others[:_MOST] or every[:1]
     if not values:
         return Recipe(_STREAM.signals, is_stream=False)
@@ -187,6 +187,11 @@ def _of_fields(message: str, types: MessageTypes) -> Recipe:
     ]
     signals = {name: (path, "") for name, (path, _) in zip(names, values, strict=True)}
     return Recipe(signals, tuple(rules), is_stream=False)
+
+
+def _is_aside(path: str) -> bool:
+    """Whether a field is a time, or the shape of a `Float64MultiArray` and the like."""
+    return path.endswith("sec") or path.startswith("layout.")
 
 
 def _are_bytes(message: str, path: str, types: MessageTypes) -> bool:
