@@ -168,6 +168,17 @@ class Collector:
         return gaps
 
 
+def sampled(blocks: Iterable[Block], signals: Sequence[Signal]) -> Iterator[tuple[Block, dict[str, Samples]]]:
+    """Blocks with the samples of `signals` in them, also of those that are computed from what is recorded."""
+    compute: dict[Expression, _Computation] = {}
+    before: dict[str, _History] = {}
+    reach = max((_reach(Current(signal)) for signal in signals), default=0)
+    for block in blocks:
+        reader = _Reader(block, compute, before)
+        yield block, {signal.name: reader.of(Current(signal)) for signal in signals}
+        before |= reader.last(reach + 1)
+
+
 def _reach(expression: Expression) -> int:
     """How many samples ago what `expression` is computed from may be."""
     reaches = [0]

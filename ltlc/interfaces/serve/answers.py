@@ -22,6 +22,7 @@ from ltlc.base.render.json import documents, place, plain
 from ltlc.frontend.language.suppression import unsuppressed
 from ltlc.interfaces.pages.panels import Panel, panels
 from ltlc.interfaces.serve.judging import judge
+from ltlc.interfaces.serve.opening import open_file
 from ltlc.interfaces.serve.questions import Question, read_question
 from ltlc.runtime.documents import json_value
 from ltlc.runtime.reports import printable
@@ -107,13 +108,14 @@ def _compare(question: Question) -> dict[str, Any]:
     return dict(found)
 
 
-def _answered(ask: Callable[[Question], dict[str, Any]], body: bytes, message_paths: Sequence[str]) -> bytes:
+def _answered(
+    ask: Callable[[Question], dict[str, Any]], body: bytes, message_paths: Sequence[str], folder: str = ""
+) -> bytes:
     """The answer to what `body` asks, as JSON. Raises Refused."""
-    return json.dumps(ask(read_question(body, message_paths)), allow_nan=False).encode()
+    return json.dumps(ask(read_question(body, message_paths, folder)), allow_nan=False).encode()
 
 
-ANSWERS = {
-    name: partial(_answered, ask)
-    for name, ask in {"check": _check, "judge": judge, "explain": _explain, "compare": _compare}.items()
-}
+_QUESTIONS = {"check": _check, "judge": judge, "explain": _explain, "compare": _compare, "open": open_file}
+
+ANSWERS = {name: partial(_answered, ask) for name, ask in _QUESTIONS.items()}
 """What can be asked, by the names that questions are posted to."""

@@ -13,13 +13,14 @@ import socket
 import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from functools import partial
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from importlib.resources import files
 from ipaddress import ip_address
 from socketserver import TCPServer
+from tempfile import TemporaryDirectory
 from typing import Any
 from urllib.parse import urlsplit
 
@@ -33,7 +34,10 @@ OF_AN_ANSWER = Budget(30, 1024)
 """What one answer may use; what it asks of others is bounded more tightly there."""
 
 MOST_BYTES = 2_000_000
-"""Of a request."""
+"""Of a request that sends no file."""
+
+MOST_OF_A_FILE = 64_000_000
+"""Bytes of a file that is dropped on the page."""
 
 MOST_AT_ONCE = 4
 """So many answers are worked on at a time; others wait."""
@@ -174,7 +178,11 @@ class Handler(BaseHTTPRequestHandler):
     def _get(self, name: str) -> None:
         name = name or "index.html"
         if name == "start.json":
-            self._send(HTTPStatus.OK, "application/json", json.dumps(self.server.start.document()).encode())
+            self._send(
+                HTTPStatus.OK,
+                "application/json",
+                json.dumps(self.server.start.document() | {"most": MOST_OF_A_FILE}).encode(),
+            )
         elif name in _ASSETS:
             content = (files(_ASSETS[name]) / name).read_bytes()
             self._send(HTTPStatus.OK, f"{_TYPES[name.rpartition('.')[2]]}; charset=utf-8", content)
@@ -189,15 +197,18 @@ class Handler(BaseHTTPRequestHandler):
             raise Refused(HTTPStatus.NOT_FOUND, "there is nothing here")
         if self.headers.get_content_type() != "application/json":
             raise Refused(HTTPStatus.UNSUPPORTED_MEDIA_TYPE, "a question is application/json")
-        job = partial(ANSWERS[name], self._body(), self.server.start.message_paths)
-        self._send(HTTPStatus.OK, "application/json", self._answer(job))
+        with TemporaryDirectory(prefix="ltlc-") if name == "open" else nullcontext("") as folder:
+            most = MOST_OF_A_FILE * 4 // 3 + MOST_BYTES if name == "open" else MOST_BYTES  # it is sent in base64
+            job = partial(ANSWERS[name], self._body(most), self.server.start.message_paths, folder)
+            found = self._answer(job)
+        self._send(HTTPStatus.OK, "application/json", found)
 
-    def _body(self) -> bytes:
+    def _body(self, most: int) -> bytes:
         written = self.headers.get("Content-Length", "")
         if not (written.isascii() and written.isdigit()):
             raise Refused(HTTPStatus.LENGTH_REQUIRED, "a question needs a Content-Length")
-        if len(written) > 9 or int(written) > MOST_BYTES:
-            raise Refused(HTTPStatus.REQUEST_ENTITY_TOO_LARGE, f"a question has at most {MOST_BYTES} bytes")
+        if len(written) > 9 or int(written) > most:
+            raise Refused(HTTPStatus.REQUEST_ENTITY_TOO_LARGE, f"a question has at most {most} bytes")
         return self.rfile.read(int(written))
 
     def _answer(self, job: Callable[[], bytes]) -> bytes:
