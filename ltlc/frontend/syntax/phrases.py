@@ -12,6 +12,7 @@ from functools import partial
 from typing import NamedTuple
 
 from ltlc.frontend.syntax.lexer import FOREIGN, FOREIGN_UNITS
+from ltlc.frontend.syntax.misspelled import UNFINISHED
 from ltlc.frontend.syntax.phrasebook import AT_FIRST, PHRASES, SECONDS, TEMPORAL
 
 LONGEST = 200
@@ -30,9 +31,6 @@ class Meant(NamedTuple):
     text: str
     differs: tuple[str, ...]
 
-
-UNFINISHED = re.compile(r"\b(?:no|some|new)\s*/")
-"""What is left of HPL, and would be a division."""
 
 _MIXED = re.compile(rf"(?!(?:always|never|eventually)\b)[^()]*?\bimplies\s+\(?{TEMPORAL}.*")
 """What would be asked about: whether the condition is meant at the first step, or always."""
