@@ -1,4 +1,4 @@
-"""A specification to start with: what is usually said of the topics that a robot has, to be changed by its author."""
+"""A specification to start with: usual properties of a robot's topics, to be changed by its author."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ _STOPS = Line(
 
 
 class Draft:
-    """What can be said of `topics`, and why some are left out."""
+    """Properties of `topics`, and why some are omitted."""
 
     def __init__(self, topics: Sequence[Topic], types: MessageTypes) -> None:
         used = self._names = Names()
@@ -69,12 +69,12 @@ class Draft:
 
     @property
     def is_empty(self) -> bool:
-        """Whether nothing can be said of any topic."""
+        """Whether no topic has properties."""
         return not self._subjects
 
     @property
     def omitted(self) -> list[str]:
-        """Each topic of which nothing can be said, and why."""
+        """Each topic without properties, and why."""
         return [f"{topic}: {why}" for topic, why in self._left_out]
 
     @property
@@ -125,7 +125,7 @@ class Draft:
             yield from rule.written(labels.new(f"{name_of(topic.name)}_{rule.label}"))
 
     def _together(self, labels: Names) -> Iterator[str]:
-        """What is said of a laser scanner and of odometry in the same namespace."""
+        """Properties of a laser scanner and odometry in the same namespace."""
         moving = {_namespace(t): of for t, of in reversed(self._subjects) if t.type == "nav_msgs/msg/Odometry"}
         for topic, subject in self._subjects:
             if topic.type == "sensor_msgs/msg/LaserScan" and (other := moving.get(_namespace(topic))):
@@ -134,7 +134,7 @@ class Draft:
 
 
 def _recipe(topic: Topic, types: MessageTypes) -> Recipe | str:
-    """What can be said of `topic`, or why it is left out."""
+    """The recipe for `topic`, or why it is omitted."""
     if topic.name in OWN:
         return "it is about ROS, not about the robot"
     if topic.omitted:

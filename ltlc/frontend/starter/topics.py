@@ -35,7 +35,7 @@ class Topic:
 
 
 class MalformedLineError(Exception):
-    """A line of a list of topics says no topic with a type."""
+    """A line of a list of topics is not a topic with a type."""
 
     def __init__(self, number: int, line: str) -> None:
         form = "`/scan [sensor_msgs/msg/LaserScan]`, as `ros2 topic list -t` writes it"

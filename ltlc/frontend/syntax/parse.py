@@ -273,7 +273,7 @@ class _Parser:
         return token.terminal in TEMPORAL and not self.text[line_start : token.span.start].strip()
 
     def _tree(self) -> syntax.SyntaxTree:
-        """The commands that are complete and not nested too deeply, which the passes that follow could not bear."""
+        """The commands that are complete and not nested too deeply for the passes that follow."""
         commands = self._understood(self.stack.parts[0])
         shallow: list[syntax.Command] = []
         for command in commands:
@@ -306,7 +306,7 @@ class _Parser:
         return not diagnostics and len(tree.commands) == 1
 
     def _understood(self, commands: list[syntax.Command]) -> list[syntax.Command]:
-        """`commands` without those on lines in the words of others that can be parsed: how they are written is told.
+        """`commands` without those on lines in another language's words that happen to parse; these are reported.
 
         Their properties run on, or divide by a topic.
         """

@@ -26,7 +26,7 @@ MOST_WAYS = 6
 
 
 class Meant(NamedTuple):
-    """The line to write instead of one in the words of others, and where it says something else."""
+    """The line to write instead of one in another language's words, and where it means something else."""
 
     text: str
     differs: tuple[str, ...]
@@ -48,7 +48,7 @@ _DECLARED = re.compile(r"\bdecl\s+(\w+)\s+/?(\S+)\s+([\w/]+)(?:\.([\w.]+))?")
 
 
 def meant(line: str, text: str, is_accepted: Callable[[str], bool]) -> Meant | None:
-    """What `line` of `text` says in the words of others, as a line that `is_accepted`; None if it is no such line."""
+    """What `line` of `text` means in another language's words, as a line that `is_accepted`; None if nothing."""
     if len(line) > LONGEST:
         return None
     label, body = _labelled(line)
