@@ -23,7 +23,7 @@ Times = NDArray[np.int64]
 Numbers = NDArray[np.float64]
 
 MOST_NAMES = 200
-"""So many different strings of one expression are told apart."""
+"""At most so many different strings of one expression are distinguished."""
 
 
 class Series:

@@ -38,7 +38,7 @@ OF_A_COMPARISON = Budget(4, 512)
 
 
 def _check(question: Question) -> dict[str, Any]:
-    """The findings about the text, what its properties say, and which signals they read."""
+    """The findings about the text, the meaning of its properties, and the signals they read."""
     specification, diagnostics = _analysed(question) if question.analyses else _read(question)
     if specification is None:
         return {"diagnostics": documents(diagnostics), "properties": None, "signals": [], "rate": None}

@@ -33,7 +33,7 @@ MOST_CHARACTERS = 1_000_000
 def open_file(question: Question) -> dict[str, Any]:
     """The samples of the signals that the specification reads, in a recording; the first rows of a long one.
 
-    Times count from its beginning. It is written to the folder of the question, and is gone with that.
+    Times count from its beginning. The recording is written to the folder of the question, and removed with it.
     """
     path = _written(question)
     specification, _ = load_text(question.source, question.message_paths, question.encoding, recordings=[path])

@@ -48,7 +48,7 @@ class Question:
 
     @property
     def encoding(self) -> Encoding:
-        """How scopes are read; `episode` if nothing is said."""
+        """How scopes are read; `episode` by default."""
         try:
             return encoding_of(self._get("encoding", str, "episode"))
         except UnusableInput as error:
@@ -71,7 +71,7 @@ class Question:
 
     @property
     def at(self) -> int:
-        """The step up to which the run is looked at closely; the last if nothing is said."""
+        """The step up to which the run is shown in detail; the last by default."""
         return self._get("at", int, MOST_STEPS)
 
     @property

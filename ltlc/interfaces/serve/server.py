@@ -1,7 +1,7 @@
 """The server of `ltlc serve`: the page and its files by GET, answers about specifications by POST, as JSON.
 
-Whoever opens the page trusts it with a text; other pages that are open in the same browser must not get at it. So a
-request is refused that names another host (a name that its owner has made point here) or comes from another origin.
+Users trust the page with a text that other pages in the same browser must not reach. So a request that names another
+host (a foreign name that resolves to this machine) or comes from another origin is refused.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ LONGEST_WAIT = 20.0
 """Seconds that a request waits for its turn."""
 
 PATIENCE = 0.1
-"""Seconds between two looks whether whoever asked is still there."""
+"""Seconds between two checks whether the client is still there."""
 
 HEADERS = {
     "Content-Security-Policy": "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; "
@@ -73,7 +73,7 @@ _ASSETS = {
 class Server(ThreadingHTTPServer):
     """Serves the page that begins with `start`, at `host` and `port`; 0 takes any that is free.
 
-    Anybody can reach a host that is not this machine's own: then the page is below a path that nobody can guess.
+    If other machines can reach the host, the page is below a path that nobody can guess.
     """
 
     daemon_threads = True
@@ -119,11 +119,11 @@ def _is_number(host: str) -> bool:
 
 
 _HAS_LEFT: int = getattr(select, "POLLRDHUP", 0)
-"""What Linux says of a connection that the other side has closed, whatever can still be read from it."""
+"""How Linux marks a connection that the other side has closed, even if there is something left to read."""
 
 
 class _GoneError(Exception):
-    """Whoever asked does not wait for the answer any more."""
+    """The client no longer waits for the answer."""
 
 
 class Handler(BaseHTTPRequestHandler):
@@ -144,7 +144,7 @@ class Handler(BaseHTTPRequestHandler):
         self._guarded(self._post)
 
     def log_message(self, format: str, *args: Any) -> None:
-        """Requests are nobody's business."""
+        """Requests are not logged."""
 
     def end_headers(self) -> None:
         """Every answer has the same headers of security."""
@@ -153,7 +153,7 @@ class Handler(BaseHTTPRequestHandler):
         super().end_headers()
 
     def _guarded(self, respond: Callable[[str], None]) -> None:
-        """Respond to requests of the page, refuse others, and bear that whoever asks may leave at any time."""
+        """Respond to requests of the page, refuse others; a client may leave at any time."""
         try:
             try:
                 respond(self._own_path())
@@ -168,7 +168,7 @@ class Handler(BaseHTTPRequestHandler):
             raise
 
     def _own_path(self) -> str:
-        """What is asked for, below the path of the page. Raises Refused, also for whoever may not ask."""
+        """What is requested, below the path of the page. Raises Refused, also for clients without access."""
         _refuse_foreign(self.server, self.headers.get_all("Host", []), self.headers.get_all("Origin", []))
         path = self.path.partition("?")[0]
         if not path.startswith(self.server.base):
@@ -212,7 +212,7 @@ class Handler(BaseHTTPRequestHandler):
         return self.rfile.read(int(written))
 
     def _answer(self, job: Callable[[], bytes]) -> bytes:
-        """What `job` gives in a child, which is ended if nobody waits for it."""
+        """What `job` returns in a child, which is ended if the client leaves."""
         with self._turn():
             [outcome] = run_all([job], OF_AN_ANSWER, watch=self._stop_if_gone)
         return json.dumps({"limit": f"this {outcome}"}).encode() if isinstance(outcome, Exceeded) else outcome
@@ -231,7 +231,7 @@ class Handler(BaseHTTPRequestHandler):
             self.server.turns.release()
 
     def _stop_if_gone(self, *_: int) -> None:
-        """Raise an exception if whoever asked has closed the connection, be it with more said before."""
+        """Raise an exception if the client has closed the connection, even if it sent more before."""
         poll = select.poll()
         poll.register(self.connection, select.POLLIN | _HAS_LEFT)
         seen = poll.poll(0)
@@ -255,7 +255,7 @@ def _refuse_foreign(server: Server, hosts: list[str], origins: list[str]) -> Non
 
 
 def _name(host: str) -> str:
-    """The name in a `Host` header, in small letters; empty if there is none."""
+    """The name in a `Host` header, in lower case; empty if there is none."""
     try:
         return urlsplit(f"//{host}").hostname or ""
     except ValueError:
