@@ -173,7 +173,7 @@ class FromTable:
     def columns(self) -> tuple[str, ...]:
         """The signals that it has values of, and the heads that are read as none.
 
-        Not those by topic and field: whoever exports messages has all of their fields.
+        Not those by topic and field: exported messages have all of their fields.
         """
         kept = [head for head in self.heads if head in self._sources or (head not in self.cells and head[:1] != "/")]
         return (*kept, *(name for name in self._sources if name not in kept))
@@ -202,7 +202,7 @@ class FromTable:
 
     @property
     def beginning(self) -> Nanoseconds | None:
-        """That of its first row, which nothing says before."""
+        """That of its first row, unknown before it is read."""
         return None
 
     @property
@@ -211,7 +211,7 @@ class FromTable:
         return {}
 
     def remarks(self) -> list[Diagnostic]:
-        """That there are no headers, if their times are asked for; else, what is amiss in a table is an error."""
+        """That there are no headers, if their times are requested; other problems in a table are errors."""
         if self._stamp is not Stamp.HEADER:
             return []
         message = "the rows of a table have no headers: their time is in a column"
