@@ -110,7 +110,7 @@ class Run(Mapping[str, PropertyResult]):
 
     @property
     def exit_code(self) -> int:
-        """As of `ltlc run`: 0 all hold; 1 one is violated; 2 damaged; 3 one has an open obligation, or never started."""
+        """As of `ltlc run`: 0 all hold; 1 one is violated; 2 damaged; 3 one has an obligation open or never started."""
         return self._report.exit_code
 
     def text(self) -> str:
