@@ -2,20 +2,26 @@
 
 from __future__ import annotations
 
+import csv
 import io
+import json
+import math
 import re
 import shutil
 import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from random import Random
+from typing import Any
 
 import numpy as np
+import pyarrow as pa
 import pytest
 from bag_support import LEVEL, ODOMETRY, SCAN, STORE, Sent, made, mcap, odometry, random_message, ros1, rosbag2
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from language_support import compiled
+from pyarrow import parquet as pq
 
 from ltlc.analysis.analyse import analyse
 from ltlc.automata import Budget
@@ -241,9 +247,12 @@ def test_a_file_that_cannot_be_written_is_said(new: Run, tmp_path: Path, capsys:
     assert "cannot be written" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("name", ["none.mcap", "drive.csv", "damaged.mcap"])
-def test_what_is_no_bag_is_said(tmp_path: Path, name: str, capsys: pytest.CaptureFixture[str]) -> None:
-    (tmp_path / "drive.csv").write_text("time,x\n0,1\n")
+@pytest.mark.parametrize("name", ["none.mcap", "drive.csv", "drive.txt", "damaged.mcap"])
+def test_a_recording_that_cannot_be_read_is_reported(
+    tmp_path: Path, name: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "drive.csv").write_text("time,x\n1,1\n0,1\n")
+    (tmp_path / "drive.txt").write_text("time,x\n0,1\n")
     (tmp_path / "damaged.mcap").write_text("no bag")
     assert main(["new", str(tmp_path / name)]) == 2
     assert "LTL" in capsys.readouterr().err
@@ -313,6 +322,86 @@ def test_the_bag_that_it_was_made_of_passes_it(name: str, tmp_path: Path, capsys
         "odom_in_area": "never hypot(odom_position.x, odom_position.y) > 4.8",
     }
     assert "It was 0 throughout.\n# odom_turn_limit: never abs(odom_turn) > ?\n" in text
+
+
+def rows() -> dict[str, list[Any]]:
+    """Columns of a drive: a value for each row, None where there is none."""
+    seconds = [number / 10 for number in range(60)]
+    return {
+        "time": seconds,
+        "speed": [round(math.sin(time), 3) for time in seconds],
+        "stopped": [abs(math.sin(time)) < 0.1 for time in seconds],
+        "mode": ["AUTO" if time < 3 else "HAND" for time in seconds],
+        "scan": [[1.5 + number % 3, 2.0, 0.5] for number in range(60)],
+        "gear": [number % 2 if number % 4 == 0 else None for number in range(60)],
+        "idle": [None] * 60,
+        "min": seconds,
+        "pos.x": seconds,
+        "/odom/pose/x": seconds,
+    }
+
+
+def as_csv(path: Path) -> Path:
+    of = rows()
+    arrays = {f"scan[{place}]": [array[place] for array in of["scan"]] for place in range(3)}
+    columns = {**{name: column for name, column in of.items() if name != "scan"}, **arrays}
+    with path.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(columns)
+        writer.writerows(zip(*columns.values(), strict=True))
+    path.write_text(path.read_text().replace("True", "true").replace("False", "false"))
+    return path
+
+
+def as_json_lines(path: Path) -> Path:
+    of = rows()
+    lines = (json.dumps(dict(zip(of, row, strict=True))) for row in zip(*of.values(), strict=True))
+    path.write_text("".join(f"{line}\n" for line in lines))
+    return path
+
+
+def as_parquet(path: Path) -> Path:
+    pq.write_table(pa.table({**rows(), "idle": pa.array([None] * 60, pa.float64())}), path)
+    return path
+
+
+TABLES: dict[str, Callable[[Path], Path]] = {
+    "drive.csv": as_csv,
+    "drive.jsonl": as_json_lines,
+    "drive.parquet": as_parquet,
+}
+
+
+@pytest.mark.parametrize("name", TABLES)
+def test_the_table_that_it_was_made_of_passes_it(name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    table = TABLES[name](tmp_path / name)
+    passes(table, capsys)
+    assert main(["new", str(table)]) == 0
+    text = capsys.readouterr().out
+    assert "guessed from the columns of the table" in " ".join(text.split("\n# "))
+    assert set(re.findall(r"^decl .*", text, re.MULTILINE)) == {
+        "decl speed /speed Float64.data",
+        "decl stopped /stopped Bool.data",
+        "decl mode /mode String.data",
+        "decl gear /gear Float64.data",
+        "decl scan /scan Float64MultiArray.data",
+    }
+    for stated in ("never speed > 1.2", 'always mode in {"AUTO", "HAND"}', "always len(scan) == 3", "age(gear) <= "):
+        assert stated in text
+    omitted = text.partition("# Omitted:\n")[2]
+    assert re.findall(r"^# column `(\S+)`: ", omitted, re.MULTILINE) == ["idle", "min", "pos.x", "/odom/pose/x"]
+
+
+def test_a_column_whose_values_change_their_type_is_not_guessed(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    table = tmp_path / "drive.jsonl"
+    lines = [{"time": number, "a": number, "b": number if number < 9 else "x"} for number in range(10)]
+    table.write_text("".join(f"{json.dumps(line)}\n" for line in lines))
+    assert main(["new", str(table)]) == 0
+    text = capsys.readouterr().out
+    assert "decl a /a Float64.data" in text
+    assert "# column `b`: its values are not all numbers" in text
 
 
 @pytest.mark.parametrize("seed", range(8))

@@ -203,6 +203,42 @@ def test_of_an_edge_of_steps_and_one_of_time_only_the_one_that_was_taken_is_mark
     ]
 
 
+def labels_of(svg: str) -> list[tuple[float, float, float, float]]:
+    """Left, top, right and bottom of the labels of edges, a character taken for 5 pixels."""
+    found = []
+    for group in ElementTree.fromstring(svg).findall(f"{SVG}g"):
+        lines = [] if "edge" not in group.get("class", "") else [*group.iter(f"{SVG}tspan")]
+        if lines:
+            x, tops = float(lines[0].get("x", "")), [float(line.get("y", "")) for line in lines]
+            half = 2.5 * max(len(line.text or "") for line in lines)
+            found.append((x - half, min(tops) - 9, x + half, max(tops) + 2))
+    return found
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "after_until near, b, eventually c",
+        "after_until near, b, always (v > 1 implies eventually c within 2 s)",
+        "after near, until b, eventually c within 3 s",
+        "(always (near implies eventually b)) and (always (b implies eventually c))",
+        "after_until near, b, always c for 2 s",
+        "eventually near and eventually b and eventually c",
+    ],
+)
+def test_the_labels_of_a_monitor_overlap_neither_one_another_nor_a_state(text: str) -> None:
+    (compiled,), _ = from_text(f"{DECLARATIONS}decl b /b Bool.data\ndecl c /c Bool.data\n{text}\n")
+    svg = machine_picture(compiled, None, Scale(), "p").svg
+    labels = labels_of(svg)
+    circles = ElementTree.fromstring(svg).iter(f"{SVG}circle")
+    middles = ((float(each.get("cx", "")), float(each.get("cy", ""))) for each in circles)
+    states = [(x - 20, y - 20, x + 20, y + 20) for x, y in middles]
+    assert len(labels) > len(states) > 2
+    for number, (left, top, right, bottom) in enumerate(labels):
+        for other in (*labels[number + 1 :], *states):
+            assert right <= other[0] or other[2] <= left or bottom <= other[1] or other[3] <= top, svg
+
+
 def test_a_recording_with_the_time_of_day_is_shown_from_its_beginning_on(tmp_path: Path) -> None:
     html = page("slow: never v > 2\n", recorded(tmp_path, "1700000000.5,1,true", "1700000002,3,true"))
     assert data(html)["timelines"][0]["clock"] == {"zero": 0, "since": True}

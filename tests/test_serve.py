@@ -10,8 +10,10 @@ import signal
 import socket
 import subprocess
 import sys
+import tempfile
 import threading
 import time
+from base64 import b64encode
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import partial
@@ -20,6 +22,7 @@ from typing import Any
 from unittest.mock import Mock
 
 import pytest
+from bag_support import LEVEL, Sent, made, mcap, odometry, ros1, rosbag2
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -28,7 +31,7 @@ from ltlc.cli import main
 from ltlc.interfaces.serve import server as serving
 from ltlc.interfaces.serve.answers import ANSWERS
 from ltlc.interfaces.serve.questions import MOST_STEPS
-from ltlc.interfaces.serve.server import MOST_BYTES, Server
+from ltlc.interfaces.serve.server import MOST_BYTES, MOST_OF_A_FILE, Server
 from ltlc.interfaces.serve.start import Start
 
 TEXT = """decl v /v Float64.data
@@ -254,20 +257,117 @@ def test_verdicts_are_those_of_ltlc_run_on_the_same_rows(
         assert all(shown[when] == verdict for when, verdict in at.items() if when in shown)
 
 
-def _command(folder: Path) -> list[dict[str, Any]]:
+def _command(folder: Path, recording: Path | None = None) -> list[dict[str, Any]]:
     """The properties in the document of `ltlc run`."""
     from contextlib import redirect_stderr, redirect_stdout
     from io import StringIO
 
     out = StringIO()
     with redirect_stdout(out), redirect_stderr(StringIO()):
-        main(["run", str(folder / "specification"), str(folder / "run.jsonl"), "--format", "json", "--verdicts"])
+        run = str(recording or folder / "run.jsonl")
+        main(["run", str(folder / "specification"), run, "--format", "json", "--verdicts"])
     found: list[dict[str, Any]] = json.loads(out.getvalue())["properties"]
     return found
 
 
 def row(time: float, v: object, near: object = False) -> dict[str, object]:
     return {"time": time, "v": v, "near": near}
+
+
+DRIVE = """decl odom /odom Odometry.twist.twist.linear.x
+decl level /level Level.state
+object robot /odom Odometry
+fast: never robot.velocity > 1.5
+fresh: always age(odom) < 400 ms
+rising: after_until level == 3, level == 1, always odom - @{odom, -1} < 0.3
+late: always age(level) < 2 s
+named: eventually level in {Level.FULL}
+"""
+
+
+def sent() -> list[Sent]:
+    """A drive whose topics begin and end at different times."""
+    odometries = [
+        odometry(10**9 + 10**8 * number, twist__twist__linear__x=number / 20, twist__twist__linear__y=0.1)
+        for number in range(40)
+    ]
+    levels = [Sent("/level", LEVEL, 3 * 10**8 * number, made(LEVEL, state=1 + number % 3)) for number in range(1, 9)]
+    more = [Sent("/go", "std_msgs/msg/Bool", time, made("std_msgs/msg/Bool")) for time in (0, 9 * 10**9)]
+    return sorted([*odometries, *levels, *more], key=lambda each: each.time)
+
+
+def in_base64(path: Path) -> dict[str, str]:
+    return {"file": path.name, "content": b64encode(path.read_bytes()).decode()}
+
+
+BAGS: dict[str, Callable[[Path], Path]] = {
+    "drive.mcap": lambda folder: mcap(folder / "drive.mcap", sent()),
+    "drive.bag": lambda folder: ros1(folder / "drive.bag", sent()),
+    "drive.db3": lambda folder: next(rosbag2(folder / "drive", sent()).glob("*.db3")),
+}
+
+
+@pytest.mark.parametrize("name", BAGS)
+def test_a_bag_that_is_dropped_is_judged_as_ltlc_run_judges_it(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    bag = BAGS[name](tmp_path)
+    (tmp_path / "left").mkdir()
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "left"))
+    (tmp_path / "specification").write_text(DRIVE)
+    with served(Start("props.txt", DRIVE, (str(bag),))) as server:
+        opened = answer(server, "open", text=DRIVE, **in_base64(bag))
+        assert (opened["diagnostics"], opened["remark"]) == ([], "")
+        steps = [
+            {"time": row["time"]} | {of: json.loads(cell) for of, cell in row["cells"].items()}
+            for row in opened["rows"]
+        ]
+        assert (steps[0]["time"], steps[-1]["time"]) == ("0", "9")
+        judged = answer(server, "judge", text=DRIVE, steps=steps)["properties"]
+    wanted = _command(tmp_path, bag)
+    assert [each["verdict"] for each in judged] == [each["verdict"] for each in wanted]
+    assert {each["verdict"] for each in wanted} > {"violated", "satisfied"}
+    for of_page, of_command in zip(judged, wanted, strict=True):
+        decided = of_command["decided_at"]
+        assert decided is None or of_page["changes"][-1]["time_ns"] == decided["time_ns"]
+    assert list((tmp_path / "left").iterdir()) == []
+
+
+def test_of_a_long_recording_the_first_rows_are_opened_and_the_page_says_so(server: Server, tmp_path: Path) -> None:
+    long = tmp_path / "long.jsonl"
+    long.write_text("".join(f'{{"time": {5 + number}, "v": {number}}}\n' for number in range(MOST_STEPS + 1)))
+    opened = answer(server, "open", text=TEXT, **in_base64(long))
+    assert len(opened["rows"]) == MOST_STEPS - 1
+    assert opened["rows"][1] == {"time": "1", "cells": {"v": "1"}}
+    assert opened["remark"].startswith(f"only the first {MOST_STEPS - 1} rows of long.jsonl are here")
+
+
+@pytest.mark.parametrize(
+    ("file", "content", "status", "said"),
+    [
+        ("run.mcap", "AAAA", 200, "run.mcap"),
+        ("../run.jsonl", "AAAA", 200, "run.jsonl"),
+        ("run.jsonl", "?", 400, "`content` is not base64"),
+        ("..", "AAAA", 400, "`file` is not the name of a file"),
+        ("", "AAAA", 400, "`file` is not the name of a file"),
+        ("a\0.bag", "AAAA", 400, "`file` is not the name of a file"),
+        ("run.exe", "AAAA", 200, "`run.exe` is not a recording"),
+    ],
+)
+def test_a_file_that_is_no_recording_is_reported_and_not_kept(
+    server: Server, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, file: str, content: str, status: int, said: str
+) -> None:
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    found = post(server, "open", {"text": TEXT, "file": file, "content": content})
+    assert found[0] == status
+    assert said in json.dumps(found[1])
+    assert str(tmp_path) not in json.dumps(found[1])
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_file_that_is_too_large_is_not_read(server: Server) -> None:
+    status, _, body = ask(server, "POST", "/open", b"", Content_Length=str(2 * MOST_OF_A_FILE))
+    assert (status, "at most" in body.decode()) == (413, True)
 
 
 def test_a_value_that_fits_no_signal_is_told_with_its_row_and_those_before_are_judged(server: Server) -> None:

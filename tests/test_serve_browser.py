@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from base64 import b64encode
+from collections.abc import Callable, Iterator
+from pathlib import Path
 from typing import Any
 
 import chromium
 import pytest
+from bag_support import Sent, mcap, odometry, ros1, rosbag2
 from test_serve import served
 
 from ltlc.frontend.syntax.lexer import FUNCTIONS, KEYWORDS, QUANTIFIERS
@@ -367,25 +370,70 @@ def test_a_table_that_is_pasted_is_the_run(browser: chromium.Browser) -> None:
     )
 
 
-DROP = """const [name, text] = arguments, files = new DataTransfer();
-files.items.add(new File([text], name));
+DROP = """const [name, content] = arguments, files = new DataTransfer();
+files.items.add(new File([Uint8Array.from(atob(content), (c) => c.charCodeAt(0))], name));
 document.body.dispatchEvent(new DragEvent("drop", { dataTransfer: files, bubbles: true, cancelable: true }));"""
+
+
+def drop(browser: chromium.Browser, name: str, content: bytes) -> None:
+    browser.run(DROP, name, b64encode(content).decode())
 
 
 def test_a_table_that_is_dropped_is_the_run_and_the_violated_property_is_chosen(browser: chromium.Browser) -> None:
     write(browser, "slow: never robot.velocity > 9\nslower: never robot.velocity > 2\n")
     browser.wait_until("return document.querySelectorAll('#properties button').length === 2")
     browser.run("document.querySelector('#properties button').click()")
-    browser.run(DROP, "drive.CSV", "time,robot.velocity\n0,1\n1,3\n")
+    drop(browser, "drive.CSV", b"time,robot.velocity\n0,1\n1,3\n")
     browser.wait_until("return document.querySelectorAll('#properties button')[1].ariaPressed === 'true'")
     assert cells(browser, "robot.velocity") == ["1", "3"]
 
 
-def test_a_file_that_is_no_table_is_refused_when_it_is_dropped(browser: chromium.Browser) -> None:
+BAGS: dict[str, Callable[[Path, list[Sent]], Path]] = {
+    "drive.mcap": lambda folder, sent: mcap(folder / "drive.mcap", sent),
+    "drive.bag": lambda folder, sent: ros1(folder / "drive.bag", sent),
+    "drive.db3": lambda folder, sent: next(rosbag2(folder / "drive", sent).glob("*.db3")),
+}
+
+
+@pytest.mark.parametrize("name", BAGS)
+def test_a_bag_that_is_dropped_is_the_run(browser: chromium.Browser, tmp_path: Path, name: str) -> None:
+    sent = [odometry(second * 10**9, twist__twist__linear__x=second / 2) for second in range(8)]
+    write(browser, "object robot /odom Odometry\nnever robot.velocity > 2\n")
+    wait_for_verdict(browser, "presumably satisfied")
+    drop(browser, name, BAGS[name](tmp_path, sent).read_bytes())
+    wait_for_verdict(browser, "violated")
+    assert cells(browser, "time") == [str(second) for second in range(8)]
+    assert cells(browser, "robot.velocity") == ["0", "0.5", "1", "1.5", "2", "2.5", "3", "3.5"]
+
+
+def test_of_a_long_recording_that_is_dropped_the_page_says_what_is_not_there(browser: chromium.Browser) -> None:
+    lines = "".join(f'{{"time": {number}, "robot.velocity": 1}}\n' for number in range(2500))
+    drop(browser, "long.jsonl", lines.encode())
+    browser.wait_until("return document.getElementById('remarks').textContent.includes('only the first 1999 rows')")
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [("drive.exe", "drive.exe is not a recording"), ("drive.mcap", "drive.mcap"), ("drive.jsonl", "not JSON")],
+)
+def test_a_file_that_is_no_recording_is_refused_when_it_is_dropped(
+    browser: chromium.Browser, name: str, said: str
+) -> None:
     before = cells(browser, "robot.velocity")
-    browser.run(DROP, "drive.mcap", "time,robot.velocity\n0,1\n")
-    assert "drive.mcap is not a CSV file" in browser.run("return document.getElementById('state').textContent")
+    drop(browser, name, b"time,robot.velocity\n0,1\n")
+    browser.wait_until(f"return document.getElementById('state').textContent.includes({json.dumps(said)})")
+    browser.wait_until("return !document.getElementById('state').textContent.startsWith('opening')")
     assert cells(browser, "robot.velocity") == before
+
+
+def test_a_file_that_is_too_large_is_refused_when_it_is_dropped(browser: chromium.Browser) -> None:
+    browser.run(
+        """const files = new DataTransfer(), file = new File([], "drive.mcap");
+        Object.defineProperty(File.prototype, "size", { value: 64000001, configurable: true });
+        files.items.add(file);
+        document.body.dispatchEvent(new DragEvent("drop", { dataTransfer: files, bubbles: true, cancelable: true }));"""
+    )
+    assert "larger than 64 MB" in browser.run("return document.getElementById('state').textContent")
 
 
 def test_a_signal_that_comes_back_has_the_cells_that_it_had(browser: chromium.Browser) -> None:

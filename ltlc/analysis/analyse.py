@@ -74,7 +74,7 @@ def analyse(
 ) -> Report:
     """All findings about `specification`, within `budget` for everything together.
 
-    If `pedantic`, also report matters of opinion. `watch` is told how far each stage is. Raises SpotMissing.
+    If `pedantic`, also report matters of opinion. `watch` gets the progress of each stage. Raises SpotMissing.
     """
     stages = _Stages(budget, watch)
     study = replace(_study(specification, encoding, stages), pedantic=pedantic)
@@ -139,7 +139,7 @@ class _Stages:
             yield _not_decided(question, [s for job, _ in open_ for s in job.about], _sentence(open_[0][1].reason))
 
     def _outcomes(self, jobs: Sequence[_Job], share: float) -> list[list[Finding] | Exceeded]:
-        """The outcome of each job; one of each shape first, and of the others those for which that is no answer."""
+        """The outcome of each job: one of each shape first, then those of the others that this does not answer."""
         keys = [(job.question, job.shape) if job.shape else number for number, job in enumerate(jobs)]
         first = {key: number for number, key in reversed([*enumerate(keys)])}
         examples = sorted(first.values())
@@ -197,7 +197,7 @@ def _subject(
 
 
 def _sentence(text: str) -> str:
-    """The first sentence of what an engine says."""
+    """The first sentence of an engine's message."""
     return text.partition(".  ")[0]
 
 

@@ -68,7 +68,7 @@ _SORTS: dict[ValueType, Callable[[str], Term]] = {
     ValueType.BOOLEAN: z3.Bool,
     ValueType.STRING: z3.Int,
 }
-"""What single values are; arrays are spoken of by their elements."""
+"""The terms for single values; arrays are treated by their elements."""
 
 
 Taken = Mapping[tuple[Opening, int], int]
@@ -201,7 +201,7 @@ class Translator:
         return self._variables[name]
 
     def _define(self, variable: Term, signal: Signal) -> None:
-        """State what `signal`, a number, is computed from, if that is spoken of as well."""
+        """State what `signal`, a number, is computed from, if that has a term, too."""
         if isinstance(signal.definition, Field) or signal.is_taken:
             return
         if any(key(part) in self._related for part in definition_inputs(signal)):
@@ -265,7 +265,7 @@ class Translator:
                 yield total <= length if is_numeric else total == length
 
     def _of_lengths(self) -> Iterator[Term]:
-        """Of so many samples each is a number, or there is no step."""
+        """Each of so many samples is a number; otherwise there is no step."""
         for name, length in self._lengths.items():
             folded = self._folds.get(name, {}).get(Function.LEN)
             found = self._elements.get(((name,), None))

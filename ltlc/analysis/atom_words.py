@@ -165,7 +165,7 @@ def _negated(predicate: Formula) -> Formula:
 
 
 def _of_samples(samples: str, count: Count, is_any: bool, holds: bool, verb: str) -> str:
-    """What holds of any, or, if what is counted is what fails, of all `samples`; or that it does not."""
+    """What holds of any of the `samples`, or of all, if failures are counted; or that it does not."""
     which = ("one" if holds else "none") if is_any else ("each" if holds else "one")
     said = _holding(count, verb, is_any or not holds)
     if isinstance(count.predicate, ltl.And | ltl.Or):

@@ -105,7 +105,7 @@ class Elements:
         self._claims.append((Proposition(name), term, some))
 
     def facts(self) -> Iterator[Term]:
-        """What is known of all that has been asked; to be asked for when nothing more is."""
+        """What is known from all questions; to be called once there are no more."""
         yield from (counted >= 0 for counted in self.counts.values())
         if self.are_combined:
             return

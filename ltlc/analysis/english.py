@@ -66,7 +66,7 @@ class English:
                 assert_never(self._slicing)
 
     def _clause(self, node: Property, later: str) -> str:
-        """`node` as a clause; `later` says from when on it is judged, if not from the start."""
+        """`node` as a clause; `later` is from when on it is judged, if not from the start."""
         match node:
             case p.Now(predicate):
                 return f"{_STARTS.get(later, '').format(self._step)}{self.predicate(predicate)}"
@@ -104,7 +104,7 @@ class English:
                 return self._scope(node, later)
 
     def _bounded(self, body: Property, preposition: str, time: str) -> str:
-        """`body` on the part of the run that `time` speaks of."""
+        """`body` on the part of the run that `time` is about."""
         match body:
             case p.Always(p.Now()) | p.Never(p.Now()) | p.Eventually(p.Now()) | p.Throughout():
                 return self._clause(body, f" {preposition} {time}")
@@ -228,7 +228,7 @@ class English:
 
 
 def _news_of(atom: Atom) -> str | None:
-    """The name of the signal whose message the atom says comes; None if it says something else."""
+    """The name of the signal of which the atom is `new`; None for other atoms."""
     match atom.condition:
         case IsTrue(New(signal)):
             return signal.name

@@ -1,4 +1,4 @@
-"""All that can be said about the text of a specification before it runs: what the front end says, and the analyses."""
+"""All findings about a specification before it runs: those of the front end, and of the analyses."""
 
 from __future__ import annotations
 

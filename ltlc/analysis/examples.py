@@ -53,7 +53,7 @@ class Setting:
 
     If `linked`, every step is a sample of every signal, so that history follows from the steps before. `openings` are
     the values at an opening that are read, with the clocks that start where they are taken. If it `counts`, no numbers
-    are found: letters do not tell how often something occurred.
+    are found: letters do not have how often something occurred.
     """
 
     atoms: tuple[Atom, ...]
@@ -88,7 +88,7 @@ def example_of(
 
 
 def is_held(letter: Letter) -> bool:
-    """Whether there is no step, but time passes, and a letter is held."""
+    """Whether there is no step, but time passes while a letter is held."""
     return isinstance(letter, Instant) and letter.by_time
 
 

@@ -20,7 +20,7 @@ from ltlc.specification.arrivals import waited_for
 from ltlc.specification.specification import PropertySpecification, topics, topics_of
 
 MOST_WORDS = 50
-"""Of so many short runs with a verdict, the most telling one is shown."""
+"""Of so many short runs with a verdict, the most instructive one is shown."""
 
 MOST_TRIED = 8
 """For so many of them numbers are looked for."""
@@ -47,7 +47,7 @@ CLASSES = {
 
 @dataclass(frozen=True, slots=True)
 class Explanation:
-    """What is said of one property; where a limit was met, `limit` says so, and `temporal_class` is empty.
+    """The explanation of one property; if a limit was exceeded, `limit` says so, and `temporal_class` is empty.
 
     `begins` says when its run does. `verdicts` are those that the monitor can give after some step, `examples` a run
     for each, where values were found; `not_shown` are the others.
@@ -68,7 +68,7 @@ class Explanation:
 
 
 def explain(study: Study, budget: Budget, watch: Watch | None = None) -> list[Explanation]:
-    """Each property of `study` explained, all of them within `budget`; `watch` is told how many are."""
+    """Each property of `study` explained, all of them within `budget`; `watch` gets how many are."""
     jobs = [partial(_explain, study, subject) for subject in study.subjects]
     outcomes = run_all(jobs, budget, budget.seconds, watch)
     return [
@@ -135,7 +135,7 @@ def _words(study: Study, subject: Subject, monitor: Monitor, verdict: Verdict) -
 
 
 def _telling_first(monitor: Monitor, words: Sequence[Word]) -> list[Word]:
-    """Short runs first; but a presumable verdict says more after a change of the verdict."""
+    """Short runs first; but a presumable verdict is more instructive after a change of the verdict."""
 
     def key(word: Word) -> tuple[bool, int]:
         verdicts = monitor.run(word)

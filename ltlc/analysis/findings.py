@@ -39,7 +39,7 @@ class Finding:
 
 
 def once_of_copies(findings: Iterable[Finding], names: Collection[str]) -> Iterator[Finding]:
-    """`findings` without those that say the same of other copies of a `forall`, which differ in `names` only."""
+    """`findings` without repetitions for other copies of a `forall`, which differ in `names` only."""
     if not names:
         yield from findings
         return

@@ -45,7 +45,7 @@ def source(signal: Signal) -> Hashable:
 def grouped(atoms: Sequence[Atom], through_definitions: bool) -> list[tuple[Atom, ...]]:
     """`atoms` in groups that have no value in common, in the order of their first atoms.
 
-    With `through_definitions`, a speed also goes with its components where atoms speak of both.
+    With `through_definitions`, a speed also goes with its components if atoms read both.
     """
     direct = {key(value) for atom in atoms for value in reads_of(atom.condition)}
     groups: list[tuple[set[Hashable], list[int]]] = []

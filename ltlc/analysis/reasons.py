@@ -41,7 +41,7 @@ def labels(source: Source, subject: Subject) -> tuple[Label, ...]:
 
 
 def _range(predicate: Formula, subject: Subject) -> str:
-    """What the type of a field says, in words, if `predicate` speaks of one whole number only."""
+    """What follows from the type of a field, in words, if `predicate` is about one whole number only."""
     asked = ltl.atoms(predicate)
     compared = {e for atom in subject.specification.atoms if atom.name in asked for e in operands(atom.condition)}
     fields = [e for e in compared if isinstance(e, Current | Past)]
@@ -73,7 +73,7 @@ def _conjuncts(node: Property, path: Path = ()) -> Iterator[tuple[Path, Property
 
 
 def state_predicates(node: Property | Formula, path: Path = ()) -> Iterator[tuple[Path, Formula]]:
-    """The events and state predicates of a property that are no part of a larger one, with their places."""
+    """The events and state predicates of a property that are not part of a larger one, with their places."""
     if isinstance(node, Now | Throughout):
         yield path, node.predicate
     elif isinstance(node, Formula):

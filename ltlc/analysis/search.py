@@ -27,7 +27,7 @@ from ltlc.semantics.verdicts import Verdict
 from ltlc.semantics.words import Letter, Word
 
 Wanted = Callable[[Sequence[Verdict]], bool]
-"""Whether a run on which the monitors say this is what is searched for."""
+"""Whether a run with these verdicts of the monitors is one that is searched for."""
 
 FURTHER_AWAY = 4
 """Of so many smallest bounds, half of each is a while."""
@@ -106,14 +106,14 @@ ALL_OPEN = Shut()
 def shortest(
     monitored: Sequence[tuple[Formula, Monitor]], alphabet: Alphabet, wanted: Wanted, shut: Shut = ALL_OPEN
 ) -> Word | None:
-    """A shortest word, not empty, after which the monitors say what is `wanted`; None if there is none."""
+    """A shortest word, not empty, after which the verdicts are `wanted`; None if there is none."""
     return next(all_shortest(monitored, alphabet, wanted, shut), None)
 
 
 def all_shortest(
     monitored: Sequence[tuple[Formula, Monitor]], alphabet: Alphabet, wanted: Wanted, shut: Shut = ALL_OPEN
 ) -> Iterator[Word]:
-    """Words, not empty, after which the monitors say what is `wanted`, each getting there in another way, short first.
+    """Words, not empty, after which the verdicts are `wanted`, each reaching them in another way, short first.
 
     `monitored` are formulas with their monitors, of one property if values are taken at the opening of its scopes.
     Where some have timed atoms, the words are runs in time, whose session begins with the first step.

@@ -26,7 +26,7 @@ MOST_DIGITS = 4
 
 
 def valuations(atoms: Sequence[Atom]) -> list[Letter] | None:
-    """The sets of `atoms` that can hold together; None if z3 cannot tell, or if there are too many of them."""
+    """The sets of `atoms` that can hold together; None if z3 does not know, or if there are too many of them."""
     translator, solver = _translated(atoms)
     # Variables of their own: z3 does not evaluate every condition over irrational numbers to true or false.
     holds = [z3.Bool(f"atom{number}") for number in range(len(atoms))]

@@ -62,7 +62,7 @@ class Subject:
 
     @property
     def keys(self) -> tuple[str, ...]:
-        """By what the runs that it speaks of are sliced."""
+        """The keys by which the runs that it is about are sliced."""
         slicing = self.specification.slicing
         return () if slicing is None else tuple(sorted(key.name for key in slicing.keys))
 
@@ -96,7 +96,7 @@ class Subject:
 class Study:
     """A specification with what its analyses share; `pedantic` says that opinions are asked for.
 
-    `monitors` are those that have been made, by their shapes, for whoever translates the same properties next.
+    `monitors` are those made so far, by their shapes, for later translations of the same properties.
     """
 
     specification: Specification
@@ -224,7 +224,7 @@ class Study:
     def neighbours(self) -> Sequence[frozenset[int]]:
         """For each property the numbers of the contingent others that it shares signals with.
 
-        Those of whole runs and of slices, or of slices by different keys, share none: an `each` speaks of other runs.
+        Those of whole runs and of slices, or of slices by different keys, share none: an `each` is about other runs.
         """
         related = [self.letters.related(a.name for a in subject.specification.atoms) for subject in self.subjects]
         reading: dict[tuple[object, str], set[int]] = {}

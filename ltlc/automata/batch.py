@@ -80,7 +80,7 @@ def _shape(formula: Formula, alphabet: Alphabet) -> Hashable:
 
 
 _LONG = 2
-"""ns; where one clock has one bound, nothing tells this from a longer one: what is only a moment is shorter."""
+"""ns; where one clock has one bound, this is as good as a longer one, and is only a moment."""
 
 
 def _definition(atom: TimedAtom, number: Mapping[str, int], most: Nanoseconds) -> Hashable:

@@ -1,4 +1,4 @@
-"""Folding: a monitor and the clocks that its atoms speak of, made into one machine that asks and sets them.
+"""Folding: a monitor and the clocks of its atoms, made into one machine that asks and sets them.
 
 The monitor reads atoms that clocks and the past decide; the trackers say how. Side by side they are a machine over the
 other atoms and a question for each clock, whether its next bound has passed: what runs on a robot. Letters that no run
@@ -7,7 +7,7 @@ has in a state do not matter there, which makes it small.
 What is counted may change at any instant, by a step or by time; its atom stays one of the machine.
 
 The clock of an age is not set, only asked, at every instant. That a message has come, from which ages count, is no
-atom of the machine: an age that was late and is no more tells that; otherwise it does not matter.
+atom of the machine: an age that is no longer late shows it; otherwise it does not matter.
 """
 
 from __future__ import annotations
@@ -204,7 +204,7 @@ class _Folder:
         return found
 
     def _whatever(self, names: Iterable[str], letters: Diagram) -> Diagram:
-        """`letters`, whatever is answered to what is called so."""
+        """`letters`, with any answer for the atom of this name."""
         for name in names:
             sides = (self.diagrams.given({self.levels[name]: answer}, letters) for answer in (False, True))
             letters = self.diagrams.disjunction(*sides)

@@ -313,7 +313,7 @@ def _move(move: Any) -> Hashable:
 
 
 def watcher(event: Formula, alphabet: Alphabet) -> Monitor:
-    """The monitor that says whether the last letter has `event`, a state predicate."""
+    """The monitor of whether the last letter has `event`, a state predicate."""
     letters = letters_of(event, alphabet)
     levels = {atom: level for level, atom in enumerate(letters.atoms)}
     row = letters.restrict(letters.diagrams.combine(int, of_predicate(event, letters.diagrams, levels)))

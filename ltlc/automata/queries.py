@@ -127,7 +127,7 @@ def _size(formula: Formula, kind: Any, preference: Any) -> Size:
 
 
 def words_of(formulas: Sequence[Formula], alphabet: Alphabet) -> list[Machine]:
-    """For each of `formulas`, the minimal machine that says whether a word, not empty, satisfies it; LTLf.
+    """For each of `formulas`, the minimal machine of whether a word, not empty, satisfies it (LTLf).
 
     The machines read the letters of `alphabet` and share their diagrams.
     """
@@ -136,7 +136,7 @@ def words_of(formulas: Sequence[Formula], alphabet: Alphabet) -> list[Machine]:
 
 
 def ending(formula: Formula, alphabet: Alphabet) -> Monitor:
-    """What a word, not empty, satisfies, as a monitor that presumes that it ends: it never says anything for good."""
+    """Whether a word, not empty, satisfies the formula, as a monitor with presumable verdicts only."""
     (machine,) = words_of([formula], alphabet)
     presumed = {True: Verdict.PRESUMABLY_SATISFIED, False: Verdict.PRESUMABLY_VIOLATED}
     return to_monitor(replace(machine, outputs=[presumed[holds] for holds in machine.outputs]))

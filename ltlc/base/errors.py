@@ -9,7 +9,7 @@ from ltlc.base.render import full
 
 
 class UnusableInput(ValueError):  # noqa: N818  what it is called in the public interface
-    """Nothing can be done with the input: `diagnostics` say why; as text, the errors among them with their places."""
+    """The input is unusable: `diagnostics` say why; as text, the errors among them with their places."""
 
     def __init__(self, diagnostics: Sequence[Diagnostic], message: str = "") -> None:
         errors = [each for each in diagnostics if each.severity is Severity.ERROR]

@@ -119,7 +119,7 @@ def _of_new_files() -> int:
 
 
 def refuse_unwritable(path: Path) -> None:
-    """Raise the OSError that `write_text` would, and one for what is there and no file; nothing is left behind."""
+    """Raise the OSError that `write_text` would, and one if `path` exists but is not a file; nothing is left behind."""
     if path.is_dir():
         raise IsADirectoryError(EISDIR, os.strerror(EISDIR))
     if path.exists() and not path.is_file():

@@ -1,6 +1,6 @@
 """What a document was made of: version and commit of ltlc, and SHA-256 of the specification and the recording.
 
-Everything in it is determined by its inputs: there is no date, and no path but the names that the user gave.
+Everything in it follows from the inputs: it has no date, and no paths but those that the user gave.
 """
 
 from __future__ import annotations

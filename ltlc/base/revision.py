@@ -1,4 +1,4 @@
-"""Which commit this ltlc is: as git says in a checkout, and as `hatch_build.py` wrote into a package."""
+"""The commit of this ltlc: from git in a checkout, from what `hatch_build.py` wrote in a package."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def commit_text() -> str:
 
 
 def commit_of(checkout: Path) -> str:
-    """The commit of the repository whose root is `checkout`; empty if it is none, or git is missing or fails."""
+    """The commit of the repository whose root is `checkout`; empty if it is not one, or git is missing or fails."""
     if not (checkout / ".git").exists():
         return ""
     import subprocess

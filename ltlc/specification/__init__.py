@@ -1,1 +1,1 @@
-"""The typed specification as data, and what it says: expressions and their values, atoms, the letters that exist."""
+"""The typed specification as data, and its meaning: expressions and their values, atoms, the letters that exist."""

@@ -6,7 +6,7 @@ equalities of one string with constants. All other atoms are free, and groups ar
 Lemma: every letter that the reference (`evaluation.letter`) gives for some values is allowed. By groups: the sides of a
 comparison are numbers other than NaN, or there is no step; equal expressions have one value at a step; and
 
-- with constants: each of the numbers that `numbers_of` says gives a valuation of the group (`cells.samples`);
+- with constants: each of the numbers of `numbers_of` gives a valuation of the group (`cells.samples`);
 - of a pair: each pair of doubles gives a valuation of its groups (`pairs`);
 - of strings: a string equals at most one of several different constants.
 
@@ -79,7 +79,7 @@ def _line_valuations(compared: Compared, numbers: Numbers) -> tuple[Letter, ...]
 
 
 def _condition(comparison: Comparison) -> Callable[[float], bool]:
-    """`comparison` as a condition on the value of the side that is no constant."""
+    """`comparison` as a condition on the value of the side that is not constant."""
     if isinstance(comparison.right, Number):
         constant = comparison.right.value
         return lambda value: holds(comparison, value, constant)
@@ -88,7 +88,7 @@ def _condition(comparison: Comparison) -> Callable[[float], bool]:
 
 
 def _pair_groups(atoms: Sequence[Atom]) -> Iterator[Group]:
-    """Comparisons of two expressions that are no constants, by the pair.
+    """Comparisons of two expressions that are not constant, by the pair.
 
     A margin speaks of doubles: of integers that are none, those with a margin are a pair of their own.
     """

@@ -96,7 +96,7 @@ class _Predicates:
         )
 
     def _is_apart(self, said: Diagram, letters: Diagram, levels: Iterable[int]) -> bool:
-        """Whether `said` is the same for all `letters` that differ in what `levels` ask only."""
+        """Whether `said` is the same for all `letters` that differ only in what `levels` ask."""
         diagrams = self._diagrams
         holds, fails = (
             reduce(self._some, levels, diagrams.conjunction(letters, side)) for side in (said, diagrams.negation(said))

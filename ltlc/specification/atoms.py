@@ -2,7 +2,7 @@
 
 Thirty thresholds on one signal have thirty-one valuations, and between two neighbours among the binary32 there is
 none: the letters that exist are computed on the line of the numbers that the field's type has
-(`specification/wire.py`). What is said of the elements of arrays is a comparison of one number, too: `any(C)` is
+(`specification/wire.py`). A condition on the elements of arrays is a comparison of one number, too: `any(C)` is
 `count(C) >= 1`, `all(C)` is `count(not C) < 1`. `analysis/` knows more (arithmetic over several signals, by z3, over
 the reals); monitors do not use that, because rounding could make a letter that the reals exclude. Letters that some
 hundreds of drawn doubles give count as possible there, too.

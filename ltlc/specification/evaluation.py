@@ -334,7 +334,7 @@ def _remainder(dividend: float, divisor: float) -> float:
 
 
 def _of_the_library(name: str, arguments: Sequence[float]) -> float:
-    """What the platform's mathematical functions say; NaN outside of their domain."""
+    """The platform's mathematical functions; NaN outside their domain."""
     try:
         found: float = getattr(math, name)(*arguments)
     except ValueError:

@@ -17,7 +17,7 @@ from ltlc.specification.wire import DOUBLES, Numbers, double_or_integer
 
 
 class ValueType(Enum):
-    """What a value is. Numbers are IEEE doubles, or integers where some of these are no doubles."""
+    """The kind of a value. Numbers are IEEE doubles, or integers where some of these are not doubles."""
 
     NUMBER = "number"
     BOOLEAN = "boolean"
@@ -28,7 +28,7 @@ class ValueType(Enum):
 
     @property
     def element(self) -> ValueType | None:
-        """What the elements of an array are; None for what is no array."""
+        """The kind of an array's elements; None for other values."""
         return _ELEMENTS.get(self)
 
     @property
@@ -183,7 +183,7 @@ class When:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Number:
-    """A constant number: a double, or an integer that is none. A `single` one is a binary32, and written as such.
+    """A constant number: a double, or an integer that is not one. A `single` one is a binary32, and written as such.
 
     Equal numbers are the same: 1 / (x * 0) and 1 / (x * -0) are different expressions. If it was written as a constant
     of a message, `constants` are the values that go by such names there.
@@ -248,7 +248,7 @@ class Recent:
 class Slope:
     """The difference quotient of the last two samples of `signal` over time, per second.
 
-    A speed where the simulation only tells positions. Invalid if the two samples have the same time.
+    The speed of an object of which only positions are known. Invalid if the two samples have the same time.
     """
 
     signal: Signal
@@ -422,7 +422,7 @@ class Count:
 
     @property
     def elements(self) -> tuple[Element, ...]:
-        """The elements that its conditions speak of, each once."""
+        """The elements that its conditions read, each once."""
         found = (part for part in subexpressions(self) if isinstance(part, Element))
         return tuple(dict.fromkeys(found))
 
@@ -433,7 +433,7 @@ class Count:
 
     @property
     def singles(self) -> tuple[Expression, ...]:
-        """The largest parts that speak of no element, each once; and what is NaN where there are too many elements."""
+        """The largest parts that read no element, each once; and what is NaN where there are too many elements."""
         found = dict.fromkeys(single for side in children(self) for single in _singles(side))
         return (*found, *_limits(self.over))
 
@@ -533,7 +533,7 @@ def reads(expression: Expression) -> Iterator[Read]:
 
 
 def value_type(read: Read) -> ValueType:
-    """What kind of value is read; news is or is not there, whatever it tells."""
+    """The kind of value that is read; news is a boolean, for any message."""
     match read:
         case New():
             return ValueType.BOOLEAN

@@ -16,7 +16,7 @@ KNOWN = {
     "owner": "who is responsible for it",
     "status": "its status",
 }
-"""The attributes that are known by name, and what each says; there may be others."""
+"""The attributes that are known by name, and what each means; there may be others."""
 
 
 @dataclass(frozen=True, slots=True)

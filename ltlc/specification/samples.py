@@ -72,7 +72,7 @@ def reach(wanted: Input) -> int:
 def depth_of(signal: Signal, read: Iterable[Input]) -> int:
     """How many samples of `signal` are kept for what is `read` of it.
 
-    One more than needed of a signal that has samples only where something holds: that it has one is told by counting.
+    One more than needed of a signal that has samples only where something holds: counting shows that it has one.
     """
     return max([1 if signal.when is None else 2, *map(reach, read)])
 

@@ -1,6 +1,6 @@
 """What is known of the sign of an expression wherever it has a value, in IEEE doubles: -0.0 is not 0.0.
 
-√-0.0 is -0.0 and 1 / -0.0 is -∞: that a value is not below 0 does not tell the sign of what it divides.
+√-0.0 is -0.0 and 1 / -0.0 is -∞: that a value is not below 0 does not give the sign of a quotient by it.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from ltlc.specification.functions import Function
 
 
 class Sign(IntEnum):
-    """Each says all that those before it say. NaN is no value, so each holds of it."""
+    """Each implies those before it. NaN is not a value, so each holds of it."""
 
     UNKNOWN = 0
     NOT_BELOW_ZERO = 1
@@ -91,7 +91,7 @@ def _sign_of_call(function: Function, arguments: list[Sign]) -> Sign:
             # It is one of the arguments, whichever of 0.0 and -0.0 counts as smaller.
             return min(arguments)
         case Function.MAX:
-            # It is no less than any argument; but of 0.0 and -0.0, which are equal, it may be either.
+            # It is not less than any argument; but of 0.0 and -0.0, which are equal, it may be either.
             surest = max(arguments)
             return Sign.NOT_BELOW_ZERO if surest is Sign.UNSIGNED and min(arguments) < surest else surest
         case _:
@@ -103,7 +103,7 @@ def _sign_of_arithmetic(operator: Operator, left: Sign, right: Sign) -> Sign:
         return Sign.UNKNOWN
     match operator:
         case Operator.PLUS:
-            # A sum is no less than either side; -0.0 + 0.0 is 0.0, and -0.0 only if both sides are.
+            # A sum is not less than either side; -0.0 + 0.0 is 0.0, and -0.0 only if both sides are.
             return max(left, right)
         case Operator.TIMES:
             # The signs multiply; two numbers above 0 may have a product that is rounded to 0.0. 0 * inf is NaN.

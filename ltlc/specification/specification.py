@@ -47,7 +47,7 @@ Path = tuple[int, ...]
 
 
 def gone_name(key: str) -> str:
-    """How the signal is called that says that the last array of ids, of this `key`, has not that of a slice."""
+    """The name of the signal that is true while the last array of ids, of this `key`, lacks that of a slice."""
     return f"gone {key}"
 
 
@@ -114,7 +114,7 @@ class Instances:
 
     @property
     def elements(self) -> Mapping[str, Signal]:
-        """As of slices: there are none."""
+        """As of slices: none."""
         return {}
 
     @property
@@ -131,7 +131,7 @@ class PropertySpecification:
     without its label and with white space folded. `atoms` are in the order of first use, which is that of `alphabet`.
     `spans` has the place of every part of `property`, by its path; of an association, the place of its use. Of a copy
     that `forall` makes, `names` has those that its variables stand for, and `written` what stands in their places.
-    One of `each` has a `slicing`; all else is said of a single slice or instance.
+    One of `each` has a `slicing`; everything else is about a single slice or instance.
     """
 
     label: str
@@ -152,7 +152,7 @@ class PropertySpecification:
         return self.requirement.span if self.requirement else self.span
 
     def excerpt(self, source: Source, span: Span) -> str:
-        """What `source` says at `span` of this property, on one line."""
+        """The text of `source` at `span` of this property, on one line."""
         return " ".join(source.replaced(span, self.written).split())
 
     def inputs(self) -> tuple[Input, ...]:
@@ -173,7 +173,7 @@ class PropertySpecification:
         return tuple(dict.fromkeys((*self.slicing.keys, *others)))
 
     def messages(self) -> frozenset[str]:
-        """The atoms that say of messages from which ages count that they come, possibly where there is no step."""
+        """The atoms of messages from which ages count, which may come where there is no step."""
         return messages_of(atom for part in properties.predicates(self.property) for atom in atoms_within(part))
 
     def counts(self) -> tuple[Occurred, ...]:
@@ -181,7 +181,7 @@ class PropertySpecification:
         return tuple(dict.fromkeys(each for part in properties.predicates(self.property) for each in counts_of(part)))
 
     def arrival(self, news: str) -> New:
-        """What tells that a message has come of which `news` is, one of its atoms."""
+        """The operand of the atom `news`, which is true when its message comes."""
         (operand,) = (e for atom in self.atoms if atom.name == news for e in operands(atom.condition))
         assert isinstance(operand, New)
         return operand

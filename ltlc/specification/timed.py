@@ -10,7 +10,7 @@ from ltlc.specification.expressions import New, Signal
 from ltlc.specification.text import Strength, predicate_text, text
 
 _SO_FAR = " so far"
-"""What a count without a bound is told by from the `once` of it."""
+"""What distinguishes a count without a bound from its `once`."""
 
 
 def news(signal: Signal) -> News:
@@ -42,7 +42,7 @@ def once(operand: Formula, within: Nanoseconds | None) -> Once:
 
 
 def count(operand: Formula, times: int, within: Nanoseconds | None) -> Occurred:
-    """`once operand times times within …`; without a bound, what `once` makes of it, which tells that it stays so."""
+    """`once operand times times within …`; without a bound, the operand of the `once` that makes it stay."""
     counted = f"once {predicate_text(operand, Strength.ATOM)} {times} times"
     name = f"{counted}{_SO_FAR}" if within is None else f"{counted} within {duration_text(within)}"
     return Occurred(name, operand, times, within, not _needs_news(operand))

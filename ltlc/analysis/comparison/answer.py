@@ -28,7 +28,7 @@ def answer(
 ) -> list[Answer]:
     """The answer to each of `questions`, on the `kinds` of runs asked for; each step of it may use `budget`.
 
-    `watch` is told how far it is: first with what each candidate costs, then with each pair of them. Raises
+    `watch` gets the progress: first with what each candidate costs, then with each pair of them. Raises
     Contradiction and SpotMissing.
     """
     measured = _measure(questions, budget, watch)

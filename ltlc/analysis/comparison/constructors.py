@@ -45,7 +45,7 @@ def _permanent_half(verdict: Verdict) -> Verdict:
 
 @dataclass(frozen=True, slots=True)
 class Constructor:
-    """A way to make a monitor; `part` says what of a whole monitor's verdicts it gives."""
+    """A way to make a monitor; `part` is the part of a whole monitor's verdicts that it gives."""
 
     name: str
     description: str
@@ -78,7 +78,7 @@ def _finite_monitor(formula: Formula, words: Machine) -> Monitor:
 
 
 def _constant(letters: Letters, output: bool) -> Machine:
-    """The machine of one state that always says `output`."""
+    """The machine of one state whose output is always `output`."""
     return Machine(letters, [output], [letters.restrict(letters.diagrams.terminal(0))])
 
 
@@ -112,7 +112,7 @@ class Built:
 
 @dataclass(frozen=True, slots=True)
 class Trial:
-    """One formula, and what each way made of it. `agrees` says, where that can be told, whether it is the same."""
+    """One formula, and what each way made of it. `agrees` is whether that is the same, where it is known."""
 
     name: str
     formula: Formula

@@ -29,7 +29,7 @@ from ltlc.semantics.words import Letter, Word
 def document(answers: Sequence[Answer], recordings: Sequence[Sequence[Recorded]] = ()) -> dict[str, Any]:
     """The JSON document of `ltlc compare`; `recordings` has what each recording shows of each answer.
 
-    What a limit kept from being known is null, and `limits` beside it says why.
+    What is unknown because of a limit is null, and `limits` beside it says why.
     """
     return {
         "properties": [

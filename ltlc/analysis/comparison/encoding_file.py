@@ -140,7 +140,7 @@ def _missing(source: Source, draft: _Draft) -> Iterator[Diagnostic]:
 
 
 def _idle(source: Source, draft: _Draft) -> Iterator[Diagnostic]:
-    """Equations that say the same whatever some letter is, or the same of all runs."""
+    """Equations that do not depend on some letter, or on the run."""
     for keyword, letters in KEYWORDS.items():
         equation, place = draft.equations[keyword], draft.places[keyword]
         formula, free = equation.of({letter: Atom(letter) for letter in letters}), Alphabet(letters)

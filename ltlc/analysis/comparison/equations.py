@@ -54,7 +54,7 @@ class Equation:
 
 
 class EquationError(Exception):
-    """The text is no formula; the diagnostic says where and why."""
+    """The text is not a formula; the diagnostic says where and why."""
 
     def __init__(self, found: Diagnostic) -> None:
         super().__init__(found.message)
@@ -199,7 +199,7 @@ class _Parser:
         return lambda meaning: relativise(end(meaning), body(meaning))
 
     def _is_event(self, term: Term) -> bool:
-        """Whether `term` speaks of the current step, if its letters other than events do not."""
+        """Whether `term` is about the current step, if its letters other than events are not."""
         meaning = {name: Atom(name) if name in self._events else Next(Atom(name)) for name in self._letters}
         return is_propositional(term(meaning))
 

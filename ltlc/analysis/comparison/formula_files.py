@@ -14,7 +14,7 @@ from ltlc.base.source import Source, Span
 from ltlc.semantics.ltl import Formula
 
 NONE = "-"
-"""What stands in a table where there is no formula."""
+"""A table's entry for no formula."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,7 +96,7 @@ class _Reader:
         self.problems: list[Diagnostic] = []
 
     def formula(self, source: Source, cell: _Cell) -> Formula | None:
-        """The formula in `cell`; None if there is none, or none that can be read."""
+        """The formula in `cell`; None if it is empty or cannot be read."""
         if cell.text == NONE:
             return None
         try:

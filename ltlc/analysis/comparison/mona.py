@@ -82,7 +82,7 @@ def automaton(formula: Formula, folder: Path) -> MonaAutomaton:
 
 
 def _run_mona(file: Path) -> str:
-    """What `mona` prints. It bounds its own time, for whoever waits for it may be stopped before it ends."""
+    """What `mona` prints. It limits its own time, as this process may be stopped before it ends."""
     limit = partial(resource.setrlimit, resource.RLIMIT_CPU, (MOST_SECONDS, MOST_SECONDS))
     command = ["mona", "-xw", str(file)]
     try:

@@ -31,11 +31,11 @@ LARGEST: Nanoseconds = 1 << 62
 
 
 MOST_RANGES = 20
-"""With more ranges than this there is no saying at which values of a bound it matters: at nearly all."""
+"""With more ranges than this, nearly every value of a bound matters, and they are not listed."""
 
 
 class NotKnownError(ValueError):
-    """What other bounds would have shown is not known; the message says why."""
+    """The results of other bounds are unknown; the message says why."""
 
 
 class Range(NamedTuple):

@@ -134,7 +134,7 @@ FORMULAS: dict[tuple[Pattern, Scope], tuple[str, str]] = {
 
 
 class UndefinedError(ValueError):
-    """The encoding says nothing about such a sentence; the message says why."""
+    """The encoding does not define such a sentence; the message says why."""
 
 
 def formula(pattern: Pattern, scope: Scope, edition: int, **meaning: Formula) -> Formula:

@@ -63,7 +63,7 @@ def _question(property_: PropertySpecification, encodings: Sequence[Encoding]) -
 
 
 def _check_time(property_: PropertySpecification, formula: Formula) -> None:
-    """Raise UndefinedError for a formula that says something of the next step where time passes between steps."""
+    """Raise UndefinedError for a formula about the next step, where time passes between steps."""
     if reads_time(property_.property) and not is_next_free(formula):
         raise UndefinedError("it refers to the next step, but the property to time, which passes between steps")
 
@@ -104,7 +104,7 @@ def _tree_size(formula: Formula, known: dict[int, int]) -> int:
 
 
 def _reading(property_: PropertySpecification, encoding: Encoding) -> Callable[[Word], bool] | None:
-    """What the sentence says on finite words under `encoding`, where that is known."""
+    """What the sentence means on finite words under `encoding`, if that is known."""
     reading = READINGS.get(encoding.name)
     if reading is None:
         return None

@@ -1,4 +1,4 @@
-"""On a recording: what the monitors say, from which step on the choice matters, and where another bound would have."""
+"""On a recording: the monitors' verdicts, from which step on the choice matters, and which bounds would change it."""
 
 from __future__ import annotations
 

@@ -32,7 +32,7 @@ class Contradiction(Exception):  # noqa: N818  not a mistake of the user's
 
 
 def holds(candidate: Candidate, run: Word | Lasso) -> bool:
-    """Whether `run` satisfies `candidate`. Raises Contradiction if its formula does not say what it is meant to say."""
+    """Whether `run` satisfies `candidate`. Raises Contradiction if its formula does not mean what it should."""
     if isinstance(run, Lasso):
         return holds_on_lasso(candidate.formula, run)
     verdict = finite.holds(candidate.formula, run)

@@ -93,7 +93,7 @@ def _related(
 
 
 def _shown(pair: Pair, run: Word | Lasso | None, is_shortest: bool) -> SeparatingRun | None:
-    """`run` with what the monitors say after each step; of time that passes, only what changes a verdict."""
+    """`run` with the monitors' verdicts after each step; of clock steps, only those that change a verdict."""
     if run is None:
         return None
     letters, loop = (run.stem + run.loop, len(run.stem)) if isinstance(run, Lasso) else (run, None)

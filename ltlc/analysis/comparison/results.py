@@ -46,7 +46,7 @@ class Question:
     Monitors are made over `alphabet`; formulas are related on runs over `possible`, which may know more of what numbers
     allow: that nothing is both within 1 m of a sign at x = 10 and beyond x = 45.
 
-    `undefined` has the encodings that say nothing about this sentence, and why. `values` gives, for the letters of a
+    `undefined` has the encodings that do not define this sentence, and why. `values` gives, for the letters of a
     run and the step from which on it repeats, if it does, values of the signals at each step, if it finds any.
     """
 
@@ -61,7 +61,7 @@ class Question:
 
     @cached_property
     def atoms(self) -> tuple[str, ...]:
-        """What a run tells at each step: the atoms that hold, and what is news."""
+        """What a run has at each step: the atoms that hold, and the news."""
         return (*self.alphabet.atoms, *(news.name for news in news_of(self._formula)))
 
     @cached_property
@@ -199,7 +199,7 @@ class Answer:
 
 @dataclass(frozen=True, slots=True)
 class Parting:
-    """The first step, from 0, after which the monitors of two candidates say different things.
+    """The first step, from 0, after which the verdicts of two candidates differ.
 
     At its time or, if that is `by_time`, later, when nothing but time has passed. `values` are those of the step.
     """

@@ -1,7 +1,7 @@
 """Finds the shortest run that distinguishes two formulas: a finite one, or an infinite one as a lasso.
 
 Spot says whether there is such a run; the run that it would give is not the shortest. Here the searches go breadth
-first, with one letter of each kind that the automata tell apart.
+first, with one letter of each kind that the automata distinguish.
 """
 
 from __future__ import annotations
@@ -78,7 +78,7 @@ accepting edge, as bit masks."""
 
 @dataclass(frozen=True, slots=True)
 class _Kind:
-    """Letters that the automaton cannot tell apart: one of them, and what it does."""
+    """Letters that the automaton does not distinguish: one of them, and its effect."""
 
     letter: Letter
     edges: Loop

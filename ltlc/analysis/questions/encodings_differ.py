@@ -60,7 +60,7 @@ def _shortest_difference(subject: Subject) -> Word | None:
 
 
 def _verdicts(judged: dict[str, bool]) -> str:
-    """What the readings say of the run."""
+    """The verdicts of the readings on the run."""
     yes = [NAMES[name] for name, holds in judged.items() if holds]
     no = [NAMES[name] for name, holds in judged.items() if not holds]
     return f"{listed(yes)}, the run below satisfies it; {listed(no)}, it does not"
@@ -73,7 +73,7 @@ def _help(study: Study, subject: Subject) -> str:
     def text(*path: int) -> str:
         return part_text(study.specification.source, subject.specification, path)
 
-    if subject.specification.openings():  # under `always`, there is no one opening
+    if subject.specification.openings():  # under `always`, there are several openings
         return f"{chosen}; `ltlc compare` shows the others"
     match subject.specification.property:
         case AfterUntil():

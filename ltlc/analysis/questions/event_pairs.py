@@ -25,9 +25,9 @@ class Event:
 
 
 def event_pairs(study: Study, subject: Subject) -> Iterator[tuple[Event, Event]]:
-    """The opening and the closing event of each `after_until` whose events speak of the same signals.
+    """The opening and the closing event of each `after_until` whose events read the same signals.
 
-    Events that speak of different signals can always hold together, and need not: nothing is to be said of them.
+    Events that read different signals can always hold together, and need not: they are no finding.
     """
     for path, scope in _scopes(subject.specification.property):
         if _signals(subject, scope.opening) == _signals(subject, scope.closing):

@@ -34,7 +34,7 @@ def ask(study: Study, subject: Subject) -> Iterator[Finding]:
 
 
 def _is_on_a_line(events: Formula, subject: Subject) -> bool:
-    """Whether all that `events` say of values is that they are less or more than others."""
+    """Whether `events` only compare values by less or more."""
     names = set(ltl.atoms(events))
     conditions = [atom.condition for atom in subject.specification.atoms if atom.name in names]
     return all(isinstance(each, Comparison) and each.relation is not Relation.EQUAL for each in conditions)

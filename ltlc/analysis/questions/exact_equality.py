@@ -36,7 +36,7 @@ from ltlc.specification.text import as_written, text
 from ltlc.specification.wire import Kind
 
 COMMANDS = frozenset({"geometry_msgs/msg/Twist"})
-"""Messages whose numbers a program has chosen: a robot is told to stop with exactly 0."""
+"""Messages whose numbers a program has chosen: the command to stop is exactly 0."""
 
 USUAL_MARGIN = 0.01
 """A centimetre, a hundredth of a radian: the margin that is proposed where the numbers suggest no other."""

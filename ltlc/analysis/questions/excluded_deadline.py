@@ -15,7 +15,7 @@ from ltlc.semantics.ltl import Formula, eventually
 
 
 def ask(study: Study, subject: Subject) -> Iterator[Finding]:
-    """A warning for each trigger after which this property and another cannot both hold; told at the later of two.
+    """A warning for each trigger after which this property and another cannot both hold, at the later of two.
 
     None about a trigger that one of them excludes by itself, nor about properties that can never hold together.
     """
@@ -34,7 +34,7 @@ def _triggers(subject: Subject) -> list[Formula]:
 
 
 def _opens(other: Subject, interval: Interval) -> bool:
-    """Whether the trigger opens a scope of `other`: that it cannot happen is told there."""
+    """Whether the trigger opens a scope of `other`: that it cannot happen is reported there."""
     return any(event.predicate == interval.trigger for event in events(other.specification.property))
 
 

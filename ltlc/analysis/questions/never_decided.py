@@ -17,7 +17,7 @@ MOST_WORDS = 200
 
 
 def ask(study: Study, subject: Subject) -> Iterator[Finding]:
-    """A warning if it can say neither, on any run."""
+    """A warning if it can report neither, on any run."""
     monitor = subject.monitor
     if monitor is None or any(verdict.is_permanent for verdict in monitor.verdicts):
         return

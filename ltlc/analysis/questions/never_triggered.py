@@ -22,7 +22,7 @@ NEVER_TESTED = "the body of this scope is never tested; check the event"
 
 @dataclass(frozen=True, slots=True)
 class Event:
-    """An event of a property: the place of its text, when it counts, and whether what is said of the scope needs it."""
+    """An event of a property: the place of its text, when it counts, and whether the scope's property needs it."""
 
     path: Path
     predicate: Formula
@@ -79,7 +79,7 @@ def events(node: Property | Formula, path: Path = ()) -> Iterator[Event]:
 def _excluding(study: Study, subject: Subject, occurs: Language) -> Subject | None:
     """The first other property with which the event cannot occur, though the two properties can hold together.
 
-    None that excludes events of its own: that is told where it stands, and says nothing of this one.
+    None that excludes events of its own: that is reported there, and is no reason here.
     """
     own = study.words[subject.number]
     for number in sorted(study.neighbours[subject.number]):
@@ -122,7 +122,7 @@ def _excluded_by_itself(study: Study, subject: Subject, event: Event) -> Finding
 
 
 def _after_the_end(study: Study, subject: Subject, event: Event) -> str:
-    """What to say where an episode has to reach something that holds only when it is over; empty if that is not so."""
+    """The message if an episode must reach something that holds only when it is over; otherwise empty."""
     scope = part_at(subject.specification.property, event.path[:-1])
     match scope:
         case AfterUntil(_, closing, Eventually(Now(wanted))) if event.opens:

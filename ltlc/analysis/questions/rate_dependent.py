@@ -32,7 +32,7 @@ def ask(study: Study, subject: Subject) -> Iterator[Finding]:
     """Without `_rate_`, a warning for history, and for equality between topics that arrive one after the other.
 
     None for what compares a sample with the one before, and nothing else: that needs no clock. Measured numbers need
-    a margin first, which `exact-equality` tells.
+    a margin first, which `exact-equality` reports.
     """
     if study.specification.rate is not None:
         return

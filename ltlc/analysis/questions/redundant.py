@@ -26,7 +26,7 @@ LARGEST_SET = 3
 def ask(study: Study, subject: Subject) -> Iterator[Finding]:
     """A warning if it does, with a smallest set that it follows from; about equivalent properties, at the later one.
 
-    None where `never-triggered` tells why it follows.
+    None where `never-triggered` reports why it follows.
     """
     if not subject.is_contingent:
         return
@@ -43,7 +43,7 @@ def ask(study: Study, subject: Subject) -> Iterator[Finding]:
 
 
 def _is_goal(subject: Subject) -> bool:
-    """Whether the property can be satisfied on the way, and never violated: then it tells something of its own."""
+    """Whether the property can be satisfied during a run, and never violated: then it adds information."""
     verdicts = subject.monitor.verdicts if subject.monitor else ()
     return Verdict.SATISFIED in verdicts and Verdict.VIOLATED not in verdicts
 
@@ -55,7 +55,7 @@ def _reason(
     stronger: Sequence[Subject],
     equivalent: Sequence[Subject],
 ) -> Sequence[Subject] | None:
-    """A smallest set that the property follows from, and that tells more than it."""
+    """A smallest set that the property follows from, and that is stronger."""
     if stronger:
         return list(islice((other for other in stronger if _is_the_reason(study, subject, other)), 1))
     if equivalent or _has_own_run(study, subject, others):
@@ -64,12 +64,12 @@ def _reason(
 
 
 def _is_the_reason(study: Study, subject: Subject, other: Subject) -> bool:
-    """Whether that the property follows from `other` is to be told of this property, and not told otherwise."""
+    """Whether to report here that the property follows from `other`, as no other finding reports it."""
     return not (has_dead_scope(study, other) or is_untested(study, subject, other) or _is_sum(study, other))
 
 
 def _is_sum(study: Study, subject: Subject) -> bool:
-    """Whether the property says only what a few that follow from it say together: it is the one to omit."""
+    """Whether a few properties that follow from it are equivalent to it together: then it is the one to omit."""
     others = [study.subjects[n] for n in sorted(study.neighbours[subject.number])]
     weaker = [o for o in others if _implies(study, [subject], o) and not _implies(study, [o], subject)]
     return 1 < len(weaker) <= LARGEST_SET and _implies(study, weaker, subject)

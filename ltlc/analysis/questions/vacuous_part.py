@@ -40,7 +40,7 @@ from ltlc.specification.specification import Path, parts
 def ask(study: Study, subject: Subject) -> Iterator[Finding]:
     """A warning for each part that can be omitted, the smallest such parts; none inside another.
 
-    None in a scope that no run opens, nor about an interval that excludes its own trigger: that is told, and why.
+    None in a scope that no run opens, nor about an interval that excludes its own trigger: that is reported.
     """
     if not subject.is_contingent:
         return
@@ -156,7 +156,7 @@ def _truths(study: Study, subject: Subject, current: Property, path: Path) -> Se
 
 
 def _is_same_event(subject: Subject, current: Property, event: Path, path: Path, truth: bool) -> bool:
-    """Whether the event holds at the same steps with `truth` at `path`; that it never holds is told elsewhere."""
+    """Whether the event holds at the same steps with `truth` at `path`; that it never holds is reported elsewhere."""
     before = part_at(current, event)
     after = with_part(before, path[len(event) :], TRUE if truth else FALSE)
     if not isinstance(before, Formula) or not isinstance(after, Formula):

@@ -1,6 +1,6 @@
 """The registry of diagnostic codes: every diagnostic is made here, so that each has a name and a page.
 
-The first digit tells the subject: 0 syntax, 1 names, 2 types and messages, 3 properties, 4 settings, 5 and 6 what
+The first digit is the subject: 0 syntax, 1 names, 2 types and messages, 3 properties, 4 settings, 5 and 6 what
 analyses find, 7 monitors and the gate, 8 recordings, 9 files. `CODE.md` beside this file explains a code.
 """
 
@@ -206,7 +206,7 @@ def diagnostic(
 
 
 def find(text: str) -> str | None:
-    """The code that `text` is, or the name of: `LTL101`, `ltl101`, `101` and `unknown-name`; None if there is none."""
+    """The code that `text` means: `LTL101`, `ltl101`, `101` or `unknown-name`; None if it is not one."""
     code = text.upper() if text.upper().startswith("LTL") else f"LTL{text}"
     if code in CODES:
         return code

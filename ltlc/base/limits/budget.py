@@ -19,7 +19,7 @@ class Budget:
 
 
 UNBOUNDED = Budget(seconds=10 * 366 * 86_400, megabytes=1 << 40)
-"""More than any job needs, and as much as the system can be told: ten years, an exabyte."""
+"""More than any job needs, within what the system accepts: ten years, an exabyte."""
 
 
 class Limit(Enum):
@@ -43,7 +43,7 @@ class Exceeded:
 
     @property
     def reason(self) -> str:
-        """Why there is none, in the words of what gave up, or of the limit."""
+        """Why there is no result: what the engine said, or otherwise the limit."""
         return self.detail or f"it {self}"
 
     def __str__(self) -> str:

@@ -32,7 +32,7 @@ from ltlc.base.limits.budget import Budget, Exceeded, Limit
 Result = TypeVar("Result")
 
 Watch = Callable[[int, int], None]
-"""Is told now and then how many jobs are done, and how many there are."""
+"""Called now and then with how many jobs are done, and how many there are."""
 
 NESTING = 10_000
 """Python's recursion limit in a child: formulas may be nested a few thousand deep there."""
@@ -201,7 +201,7 @@ class _Children:
         # A stack overflow comes with little memory in use; a failed allocation ends in an abort or in a null pointer.
         if cause == signal.SIGSEGV and usage.ru_maxrss < self._budget.megabytes * 2**10 // 2:
             return Exceeded(Limit.NESTING, self._budget)
-        # A child that ends by itself without a word had no memory left to say so.
+        # A child that ends without an answer had no memory left to send one.
         if cause in (signal.SIGABRT, signal.SIGSEGV) or not cause:
             return Exceeded(Limit.MEMORY, self._budget)
         return Exceeded(Limit.ENGINE, self._budget, f"its process ended with signal {cause}")

@@ -14,9 +14,9 @@ _DATA = 5
 
 @contextmanager
 def at_most(megabytes: int) -> Iterator[None]:
-    """Meanwhile this process can take so much memory beside what it has; whoever wants more gets a MemoryError.
+    """Within the context, this process can take so much more memory; an allocation beyond that raises MemoryError.
 
-    Nothing is bounded where there is no `/proc`, or where other threads are, which could be the ones to get it.
+    Nothing is bounded without `/proc`, or if there are other threads, which could get the MemoryError instead.
     """
     if threading.active_count() > 1 or not _SIZES.exists():
         yield

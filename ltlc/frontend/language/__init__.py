@@ -132,7 +132,7 @@ def read_source(path: Path) -> Source | Diagnostic:
 
 
 def _is_recording(path: Path) -> bool:
-    """Whether there is a recording at `path`, as far as names tell."""
+    """Whether `path` looks like a recording, by its name."""
     if not path.is_dir() and path.suffix.lower() not in _OF_RECORDINGS:
         return False
     from ltlc.inputs.recordings import is_recording  # which takes as long to import as a check

@@ -50,7 +50,7 @@ class Period(NamedTuple):
 
 
 def period(checker: Checker, node: syntax.Node) -> Period | None:
-    """The time that a bound says, from the beginning on or in an interval; None if an error was reported."""
+    """The duration or interval of a bound; None if an error was reported."""
     if isinstance(node, syntax.Interval):
         return _interval(checker, node)
     end = _duration(checker, node)
@@ -105,7 +105,7 @@ def _units() -> str:
 
 
 def of_keyword(checker: Checker, node: syntax.Temporal | syntax.Past) -> tuple[bool, Period | None]:
-    """Whether the bound after the arguments of `node` is as it should be, and what it says; None if there is none."""
+    """Whether the bound after the arguments of `node` is valid, and its time; None without a bound."""
     if node.bound is None:
         return True, None
     if TAKES.get(node.keyword.text) == node.bound.keyword.text:

@@ -75,7 +75,7 @@ def _with_the_past(way: Sequence[Built]) -> str:
 
 
 def _from_each_message(checker: Checker, whole: Built) -> Help | None:
-    """What is said of the rest of the run at every message of a topic is said from each of them on."""
+    """The fix for a property of the rest of the run that is demanded at every message: `each new`."""
     match whole.node:
         case p.Always(p.Implies(p.Now(News() as trigger), body)):
             begin, then = (checker.source.excerpt(part.span) for part in whole.parts[0].parts)

@@ -134,7 +134,7 @@ def _set_simulator(checker: Checker, command: syntax.Setting) -> None:
 
 
 def is_topic(text: str) -> bool:
-    """Whether `text` can be the name of a topic; one that does not say where it is from is of the root."""
+    """Whether `text` can be the name of a topic; one without a leading `/` or `~` is below the root."""
     return _TOPIC.fullmatch(text) is not None and len(text) + (text[0] not in "/~") <= MAX_TOPIC
 
 

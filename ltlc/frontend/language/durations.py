@@ -13,7 +13,7 @@ LONGEST = 100 * 366 * 24 * UNITS["h"]
 
 
 def nanoseconds(checker: Checker, node: syntax.DurationLiteral) -> Nanoseconds | None:
-    """The duration that `node` is; None if that is no whole number of nanoseconds, or too long, which is reported."""
+    """The duration of `node` in nanoseconds; None, and an error reported, if that is too long or not a whole number."""
     roughly = float(node.number) * UNITS[node.unit]
     if roughly > LONGEST:
         checker.report("LTL217", node.span, f"`{checker.written(node)}` is longer than a hundred years")

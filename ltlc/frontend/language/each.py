@@ -189,7 +189,7 @@ def refusals(specification: Specification, doing: str) -> list[Diagnostic]:
 
 
 def _is_for_rows_only(of: PropertySpecification) -> str:
-    """What about a property only those can do who judge recordings; empty if there is nothing."""
+    """What in a property can only be judged in recordings, not live; empty if there is nothing."""
     match of.slicing:
         case Slicing(_, variable):
             return f"`{of.label}` is judged for each `{variable}`"

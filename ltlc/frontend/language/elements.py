@@ -1,4 +1,4 @@
-"""What is said of the elements of arrays: `any`, `all` and `count` become the count of those that satisfy something."""
+"""Conditions on the elements of arrays: `any`, `all` and `count` become the count of those that satisfy something."""
 
 from __future__ import annotations
 
@@ -196,7 +196,7 @@ def _list_of(array: Input) -> object:
 
 
 def of_elements(checker: Checker, node: syntax.Comparison, left: Value, right: Value) -> Help:
-    """What can be said of elements in place of a comparison with an array."""
+    """Conditions on elements, to write instead of a comparison with an array."""
     said, relation = checker.written(node), Relation(node.operator.text.replace("!=", "=="))
     help = f"say which elements: `any({said})` or `all({said})`"
     fixes = said_of("any", checker, node), said_of("all", checker, node)
@@ -208,5 +208,5 @@ def of_elements(checker: Checker, node: syntax.Comparison, left: Value, right: V
 
 
 def said_of(quantifier: str, checker: Checker, node: syntax.Node) -> Fix:
-    """The fix that says `node` of `any`, or of `all`, elements."""
+    """The fix that demands `node` of `any`, or of `all`, elements."""
     return around(f"write `{quantifier}({checker.written(node)})`", node.span, f"{quantifier}(", ")")

@@ -157,7 +157,7 @@ def _check_templates(checker: Checker, node: syntax.Node, variables: Mapping[str
 
 
 def of_copy(found: Diagnostic, names: Mapping[str, syntax.Word]) -> Diagnostic:
-    """`found`, said of the copy of a property in which `names` stand for its variables."""
+    """`found`, reported for the copy of a property in which `names` replace its variables."""
     if not names:
         return found
     chosen = ", ".join(f"`{variable}` is `{name.text}`" for variable, name in names.items())

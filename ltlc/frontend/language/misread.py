@@ -16,7 +16,7 @@ from ltlc.frontend.language.references import kind
 from ltlc.frontend.syntax import tree as syntax
 
 _SAME_APART = {("always", "and", "always"), ("always", "and", "never"), ("eventually", "or", "eventually")}
-"""Keywords whose argument says the same whether the connective in it is inside or outside."""
+"""Keywords that mean the same whether the connective stands inside or outside their argument."""
 
 
 def second_on_line(source: Source, first: syntax.PropertyCommand, second: syntax.PropertyCommand) -> Diagnostic:

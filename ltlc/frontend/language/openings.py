@@ -1,4 +1,4 @@
-"""Values at openings where there is no one opening: which there could be, and how to write either."""
+"""Values at openings where several openings could be meant: which, and how to write each."""
 
 from __future__ import annotations
 

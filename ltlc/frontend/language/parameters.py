@@ -94,7 +94,7 @@ def _role(parent: syntax.Node, node: syntax.Parameter, values: Mapping[str, synt
 
 
 def _is_age(node: syntax.Node, values: Mapping[str, syntax.Node]) -> bool:
-    """Whether `node` is an age, or a name for one; names that are in a circle are no ages."""
+    """Whether `node` is an age, or a name for one; names defined in a circle are not."""
     seen: set[str] = set()
     while isinstance(node, syntax.Reference) and node.name.text in values and node.name.text not in seen:
         seen.add(node.name.text)
@@ -112,7 +112,7 @@ def literal(span: Span, value: str | Nanoseconds) -> syntax.Node:
 
 
 def filled(parameter: Parameter, value: str | Nanoseconds, written: str) -> syntax.PropertyCommand:
-    """The property of `parameter` with `value` in its place; it is told from others by what is `written` there."""
+    """The property of `parameter` with `value` in its place; `written`, the text there, distinguishes copies."""
     property_ = _with(parameter.span, literal(parameter.span, value), parameter.command.property)
     return replace(parameter.command, property=property_, names={NAME: syntax.Word(parameter.span, written)})
 

@@ -1,4 +1,4 @@
-"""Simulation primitives: what can be said of an object's true state, and of a robot's own view of itself."""
+"""Simulation primitives: an object's true state, and a robot's own estimate of its state."""
 
 from __future__ import annotations
 
@@ -142,21 +142,21 @@ QUANTITIES: dict[str, Callable[[Checker, Thing, Sequence[syntax.Word]], Value | 
     "velocity_angular": _velocity_angular,
     "orientation": _orientation,
 }
-"""What can be said of an object by itself; here and below, functions get the steps, the primitive's name first."""
+"""Primitives of one object; here and below, functions get the steps, the primitive's name first."""
 
 RELATIONS: dict[str, Callable[[Checker, Thing, Thing, Sequence[syntax.Word]], Value | None]] = {
     "distance": _distance,
     "distanceZ": _distance,
     "orientation_between": _orientation_between,
 }
-"""What can be said of an object and another, whose name is the second step."""
+"""Primitives of two objects; the name of the other is the second step."""
 
 ERRORS: dict[str, tuple[str, Callable[[Checker, Thing, Value | None, Sequence[syntax.Word]], Value | None]]] = {
     "localization_error": ("position", _vector_error),
     "velocity_error": ("velocity", _vector_error),
     "orientation_error": ("orientation", _orientation_error),
 }
-"""How far off a robot is in what it believes of itself, and the attribute of its model that tells what that is."""
+"""Errors of a robot's estimate of itself, and the attribute of its model that has the estimate."""
 
 PRIMITIVES = (*QUANTITIES, *RELATIONS, *ERRORS)
 """What may follow the name of an object."""
@@ -176,5 +176,5 @@ _UNITS = {
 
 
 def unit(steps: Sequence[str]) -> str:
-    """The unit of what the primitive says whose name is the first of `steps`; empty for what is no primitive."""
+    """The unit of the primitive whose name is the first of `steps`; empty if it is not a primitive."""
     return "rad/s" if list(steps[:2]) == ["velocity", "angular"] else _UNITS.get(steps[0] if steps else "", "")

@@ -177,7 +177,7 @@ def _as_value(checker: Checker, node: syntax.Reference, other: Value) -> Help | 
 
 
 def _of_object(checker: Checker, node: syntax.Reference) -> Value | None:
-    """What the primitive that `node` (`robot.distance.stop_sign`) names says of an object."""
+    """The value of the primitive of an object that `node` (`robot.distance.stop_sign`) names."""
     steps = [step for step in node.steps if isinstance(step, syntax.Word)]
     if len(steps) < len(node.steps):
         checker.report("LTL212", node.span, f"`{checker.written(node)}` has no elements")

@@ -45,7 +45,7 @@ class Requirements:
 
 
 def _comments(source: Source, command: syntax.PropertyCommand) -> list[str]:
-    """What the `##` comments above `command` say, and between its attributes and itself, line by line."""
+    """The lines of the `##` comments above `command`, and between its attributes and itself."""
     first, last = (source.position(span.start).line for span in (command.whole(), command.span))
     above = first
     while above > 1 and source.line(above - 1).lstrip().startswith("##"):

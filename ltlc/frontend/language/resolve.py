@@ -53,7 +53,7 @@ def checker_of(source: Source, tree: syntax.SyntaxTree, types: MessageTypes, enc
 
 
 def sound_part(checker: Checker, tree: syntax.SyntaxTree) -> Specification:
-    """The specification of those properties of `tree` in which there is no error; `checker` gets all that is found."""
+    """The specification of the properties of `tree` without errors; `checker` collects all findings."""
     states_none = not any(isinstance(command, syntax.PropertyCommand) for command in tree.commands)
     tree = written_out(checker, tree)
     chosen = settings(checker, tree)

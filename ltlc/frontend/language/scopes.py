@@ -83,7 +83,7 @@ class Scopes:
         return apply(_CONSTRUCTORS[keyword], context.at(node.span), *built)
 
     def _initially(self, node: syntax.Temporal, context: Context) -> Built | None:
-        """What holds at the first step, whatever stands around it; false where there is none, whatever it is."""
+        """What holds at the first step, in any scope; false if there is no step."""
         (argument,) = node.arguments
         if kind(self.checker, argument) != Sort.TEMPORAL:
             found = self._state(argument, context, in_scope=False)

@@ -30,7 +30,7 @@ _INDEX = re.compile(rf"\[([0-9]{{1,{MAX_DIGITS}}})\]")
 class TypePath:
     """A message type by its full name, a path in it, and what is at its end: a kind of value (see `value_kind`).
 
-    The kind is `message` where there is no path, and the message is no value by itself.
+    The kind is `message` if there is no path and the message is not a value by itself.
 
     If that is a number, or made of them, `numbers` are the possible ones.
     """
@@ -99,7 +99,7 @@ def message_type(source: Source, name: syntax.Word, types: MessageTypes) -> str 
 
 
 def _near(name: syntax.Word, types: MessageTypes) -> Help | None:
-    """A name that may be meant; nothing where the whole package is unknown, whose messages are no others misspelt."""
+    """A name that may be meant; none if the whole package is unknown: its messages are not misspellings of others."""
     package, slash, _ = name.text.partition("/")
     if not slash:
         return respell(name.span, name.text, types.short_names)

@@ -175,7 +175,7 @@ def signal_alone(_: Value, part: Expression) -> Signal | None:
 
 
 def signal_or_computed(value: Value, part: Expression) -> Signal | None:
-    """Likewise, or one that has the samples of what is computed from what signals are now, and is no array.
+    """Likewise, or a signal of the values of an expression over present values, if that is not an array.
 
     Whether a state predicate holds has no sample where something that it compares is NaN.
     """

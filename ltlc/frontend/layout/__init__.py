@@ -1,6 +1,6 @@
 """The canonical layout of a specification: the same commands and comments, with blanks and line breaks in one way.
 
-It stands on tokens, for the tree has no comments; where commands begin, and which `-` is a sign, the parser says.
+It works on tokens, as the tree has no comments; the parser gives where commands begin, and which `-` is a sign.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ def layout(source: Source) -> str | list[Diagnostic]:
 
 
 def _units(source: Source, tree: syntax.SyntaxTree) -> list[Unit]:
-    """The commands of `tree`, those together that have to stay on a line: `check` says something of this line."""
+    """The commands of `tree`, in groups that must stay on one line, as `check` reports something about it."""
     suppressed = _suppressed_lines(source, tree)
     units: list[list[syntax.Command]] = []
     for command in tree.commands:
@@ -51,7 +51,7 @@ def _suppressed_lines(source: Source, tree: syntax.SyntaxTree) -> set[int]:
 
 
 def _shares_line(source: Source, first: syntax.Command, second: syntax.Command, suppressed: set[int]) -> bool:
-    """Whether `second` has to stay on the line on which `first` ends: what `check` says of them depends on it."""
+    """Whether `second` must stay on the line on which `first` ends: what `check` reports depends on it."""
     if "\n" in source.text[first.span.end : second.span.start]:
         return False
     return syntax.runs_on(source.text, first, second) or source.position(second.span.start).line in suppressed

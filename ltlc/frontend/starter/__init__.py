@@ -1,11 +1,10 @@
-"""A specification to start with: what is usually said of the topics that a robot has, to be changed by its author."""
+"""A specification to start with: usual properties of a robot's topics, to be changed by its author."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from itertools import chain, count
 from textwrap import shorten
 
 from ltlc.base.source import Source
@@ -13,20 +12,11 @@ from ltlc.frontend.language.define import is_topic
 from ltlc.frontend.language.types import values_of
 from ltlc.frontend.layout import layout
 from ltlc.frontend.starter.measured import ROOM, ROOM_IN_TIME, Measured, Probe
+from ltlc.frontend.starter.names import Names, name_of
 from ltlc.frontend.starter.recipes import Recipe, constants_of, field_at, recipe_for
 from ltlc.frontend.starter.rules import Line, Subject, comment
-from ltlc.frontend.starter.topics import Topic
-from ltlc.frontend.syntax.lexer import (
-    CONTEXTUAL,
-    FOREIGN_PREFIXES,
-    FOREIGN_WORDS,
-    FUNCTIONS,
-    KEYWORDS,
-    QUANTIFIERS,
-    RESERVED,
-)
+from ltlc.frontend.starter.topics import SILENT, Topic
 from ltlc.inputs.messages.definitions import MessageTypes, shipped
-from ltlc.semantics.durations import UNITS
 
 __all__ = ["Draft"]
 
@@ -46,16 +36,14 @@ _MEASURED = (
     "{factor} on times. Change what does not fit, and take the `#` off what does. A `?` behind a `#` is a "
     "number that is not in this recording: `ltlc mine` finds it in others."
 )
+_OF_TABLE = (
+    " The topics and the types of their messages are guessed from the columns of the table: change them to those of "
+    "the robot."
+)
 _OF_BAG = (
     " Some message types are defined in the bag alone: `--msg-path {bag}` gives them to `ltlc check`, `explain` and "
     "`build`."
 )
-_WORDS = frozenset(
-    [*KEYWORDS, *CONTEXTUAL, *RESERVED, *FUNCTIONS, *QUANTIFIERS, *UNITS, *FOREIGN_WORDS, "opening"]
-    + [word.lower() for word in FOREIGN_PREFIXES]
-)
-"""What a name had better not be."""
-
 _STOPS = Line(
     "stops",
     "Whenever something is nearer than 0.5 m, it stands within ?.",
@@ -65,10 +53,10 @@ _STOPS = Line(
 
 
 class Draft:
-    """What can be said of `topics`, and why some are left out."""
+    """Properties of `topics`, and why some are omitted."""
 
     def __init__(self, topics: Sequence[Topic], types: MessageTypes) -> None:
-        used = self._names = _Names()
+        used = self._names = Names()
         self._types = types
         self._subjects: list[tuple[Topic, Subject]] = []
         self._left_out: list[tuple[Topic, str]] = []
@@ -81,13 +69,13 @@ class Draft:
 
     @property
     def is_empty(self) -> bool:
-        """Whether nothing can be said of any topic."""
+        """Whether no topic has properties."""
         return not self._subjects
 
     @property
     def omitted(self) -> list[str]:
-        """Each topic of which nothing can be said, and why."""
-        return [f"{topic.name} [{topic.type}]: {why}" for topic, why in self._left_out]
+        """Each topic without properties, and why."""
+        return [f"{topic}: {why}" for topic, why in self._left_out]
 
     @property
     def declarations(self) -> str:
@@ -99,43 +87,45 @@ class Draft:
         """What has to be measured, each once."""
         return list(dict.fromkeys(probe for _, subject in self._subjects for probe in subject.probes()))
 
-    def text(self, origin: str, bag: str = "", measured: Measured | None = None) -> str:
+    def text(self, origin: str, measured: Measured | None = None, *, is_table: bool = False) -> str:
         """A specification: topics and numbers come from `origin`. Without numbers that were `measured` it has `?`.
 
         `ltlc check` finds nothing else in it, and no error when the `#` is off all that it offers. Where it names types
-        that only the `bag` defines, it says how they are known to other commands.
+        that only a bag defines, it says how they are known to other commands.
         """
         head = _HEAD.format(origin=origin) + (
             _UNMEASURED if measured is None else _MEASURED.format(room=ROOM, factor=ROOM_IN_TIME)
         )
-        if bag and any(topic.type not in shipped() for topic, _ in self._subjects):
-            head += _OF_BAG.format(bag=bag)
-        lines, labels = [*comment(head), ""], _Names(self._names)
+        if is_table:
+            head += _OF_TABLE
+        elif measured is not None and any(topic.type not in shipped() for topic, _ in self._subjects):
+            head += _OF_BAG.format(bag=origin)
+        lines, labels = [*comment(head), ""], Names(self._names)
         left_out = list(self._left_out)
         for topic, subject in self._subjects:
             arrivals = measured and measured.arrivals.get(subject.topic)
             if measured is not None and arrivals is None:
-                left_out.append((topic, _SILENT))
+                left_out.append((topic, SILENT))
                 continue
             rules = subject.unmeasured() if not measured or not arrivals else subject.measured(arrivals, measured)
             lines += [*self._section(topic, subject, list(rules), labels), ""]
         lines += self._together(labels)
         lines += ["", "# Omitted:"] if left_out else []
-        lines += [line for topic, why in left_out for line in comment(f"{topic.name} [{topic.type}]: {why}")]
+        lines += [line for topic, why in left_out for line in comment(f"{topic}: {why}")]
         text = layout(Source("", "\n".join(lines)))
         assert isinstance(text, str), text
         return text
 
-    def _section(self, topic: Topic, subject: Subject, rules: Sequence[Line], labels: _Names) -> Iterator[str]:
-        yield f"# {topic.name} [{topic.type}]"
+    def _section(self, topic: Topic, subject: Subject, rules: Sequence[Line], labels: Names) -> Iterator[str]:
+        yield f"# {topic}"
         stated = {word for rule in rules if not rule.is_offered for word in re.findall(r"\w+", rule.text)}
         for name, line in _declarations(topic, subject, self._types):
             yield line if name in stated else f"# {line}"
         for rule in rules:
-            yield from rule.written(labels.new(f"{_base(topic.name)}_{rule.label}"))
+            yield from rule.written(labels.new(f"{name_of(topic.name)}_{rule.label}"))
 
-    def _together(self, labels: _Names) -> Iterator[str]:
-        """What is said of a laser scanner and of odometry in the same namespace."""
+    def _together(self, labels: Names) -> Iterator[str]:
+        """Properties of a laser scanner and odometry in the same namespace."""
         moving = {_namespace(t): of for t, of in reversed(self._subjects) if t.type == "nav_msgs/msg/Odometry"}
         for topic, subject in self._subjects:
             if topic.type == "sensor_msgs/msg/LaserScan" and (other := moving.get(_namespace(topic))):
@@ -143,15 +133,12 @@ class Draft:
                 yield from replace(_STOPS, text=_STOPS.text.format(**names)).written(labels.new(_STOPS.label))
 
 
-_SILENT = "no message on it was recorded"
-
-
 def _recipe(topic: Topic, types: MessageTypes) -> Recipe | str:
-    """What can be said of `topic`, or why it is left out."""
+    """The recipe for `topic`, or why it is omitted."""
     if topic.name in OWN:
         return "it is about ROS, not about the robot"
-    if topic.is_silent:
-        return _SILENT
+    if topic.omitted:
+        return topic.omitted
     if not is_topic(topic.name):
         return "the name is not a valid topic"
     if ", " in topic.type:
@@ -161,21 +148,8 @@ def _recipe(topic: Topic, types: MessageTypes) -> Recipe | str:
     return recipe_for(topic.type, types)
 
 
-class _Names:
-    """Names of signals and labels, each given once."""
-
-    def __init__(self, others: _Names | None = None) -> None:
-        self._taken: set[str] = set(others._taken) if others else set()
-
-    def new(self, wanted: str) -> str:
-        """`wanted`, or that with a number."""
-        name = next(n for n in chain([wanted], (f"{wanted}_{k}" for k in count(2))) if n not in self._taken)
-        self._taken.add(name)
-        return name
-
-
-def _subject(topic: Topic, recipe: Recipe, types: MessageTypes, used: _Names) -> Subject:
-    base, every = _base(topic.name), dict(values_of(topic.type, types))
+def _subject(topic: Topic, recipe: Recipe, types: MessageTypes, used: Names) -> Subject:
+    base, every = name_of(topic.name), dict(values_of(topic.type, types))
     names = {suffix: used.new(f"{base}_{suffix}" if suffix else base) for suffix in recipe.signals}
     names["any"] = next(iter(names.values()))
     kinds = {}
@@ -199,12 +173,6 @@ def _declarations(topic: Topic, subject: Subject, types: MessageTypes) -> Iterat
 
 def _namespace(topic: Topic) -> str:
     return topic.name.rpartition("/")[0]
-
-
-def _base(topic: str) -> str:
-    """What signals of `topic` are called."""
-    name = re.sub(r"[\W_]+", "_", topic).strip("_")
-    return f"topic_{name}".rstrip("_") if not name or name[0].isdigit() or name.lower() in _WORDS else name
 
 
 def _short(message: str, types: MessageTypes) -> str:

@@ -12,7 +12,7 @@ from ltlc.specification.text import outwards
 from ltlc.specification.wire import DOUBLES, Kind, Numbers
 
 MOST_DIFFERENT = 8
-"""So many different values of an expression are told apart at most."""
+"""At most so many different values of an expression are distinguished."""
 
 ROOM = Decimal("0.2")
 """By this share limits on values are wider than what was measured."""

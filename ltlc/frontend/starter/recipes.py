@@ -1,4 +1,4 @@
-"""What is usually said of topics of a type: which fields, and which properties of them, with numbers to be changed."""
+"""Usual properties of topics of a type: which fields, and which properties of them, with numbers to be changed."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Rule:
     beyond: float = math.inf
 
     def probe(self, names: Mapping[str, str]) -> Probe:
-        """What says whether the rule holds in a recording, and with which number."""
+        """What to measure in a recording to know whether the rule holds, and with which number."""
         text = self.text.format(**names)
         if limited := _LIMITED.fullmatch(text):
             return Probe(limited[1], "number")
@@ -158,11 +158,11 @@ _OF_KIND: dict[str, tuple[Rule, ...]] = {
     "string": (),
     "strings": (),
 }
-"""What is said of values of a kind."""
+"""Rules for values of a kind."""
 
 
 def recipe_for(message: str, types: MessageTypes) -> Recipe:
-    """What is said of topics of this type; of one without values, of its messages alone."""
+    """The recipe for topics of this type; for one without values, about its messages alone."""
     recipe = RECIPES.get(message) or _of_fields(message, types)
     named = [rule for name, (path, _) in recipe.signals.items() for rule in _named(name, message, path, types)]
     return replace(recipe, rules=(*recipe.rules, *named))
@@ -170,7 +170,7 @@ def recipe_for(message: str, types: MessageTypes) -> Recipe:
 
 def _of_fields(message: str, types: MessageTypes) -> Recipe:
     every = values_of(message, types)
-    others = [(path, kind) for path, kind in every if not path.endswith("sec") and not _are_bytes(message, path, types)]
+    others = [(path, kind) for path, kind in every if not _is_aside(path) and not _are_bytes(message, path, types)]
     values = others[:_MOST] or every[:1]
     if not values:
         return Recipe(_STREAM.signals, is_stream=False)
@@ -187,6 +187,11 @@ def _of_fields(message: str, types: MessageTypes) -> Recipe:
     ]
     signals = {name: (path, "") for name, (path, _) in zip(names, values, strict=True)}
     return Recipe(signals, tuple(rules), is_stream=False)
+
+
+def _is_aside(path: str) -> bool:
+    """Whether a field is a time, or the shape of a `Float64MultiArray` and the like."""
+    return path.endswith("sec") or path.startswith("layout.")
 
 
 def _are_bytes(message: str, path: str, types: MessageTypes) -> bool:

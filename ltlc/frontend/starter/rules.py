@@ -30,7 +30,7 @@ LEAST_RATE = 3
 """So many messages in a window are a rate at least."""
 
 LEAST_COUNT = 10
-"""So many values of a field that nobody knows tell anything at least."""
+"""A field without a recipe needs at least so many values to be worth a property."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,14 +76,14 @@ class Subject:
         ]
 
     def unmeasured(self) -> Iterator[Line]:
-        """What is said where nothing is known but the type."""
+        """The rules if only the type is known."""
         yield from () if self.recipe.is_stream else [self._line(COMES)]
         yield self._line(FRESH, is_offered=not self.recipe.is_stream)
         for rule in self.recipe.rules:
             yield self._line(rule, is_offered=rule.only_offered)
 
     def measured(self, arrivals: Arrivals, measured: Measured) -> Iterator[Line]:
-        """What is said where this was measured."""
+        """The rules with what was measured."""
         yield from self._timing(arrivals)
         for rule in self.recipe.rules:
             yield from self._judged(rule, measured.values.get(rule.probe(self.names), Values()))

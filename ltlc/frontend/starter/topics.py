@@ -1,4 +1,4 @@
-"""The topics of a robot with their types: as `ros2 topic list -t` lists them, or as a bag has them."""
+"""The topics of a robot with their types: as `ros2 topic list -t` lists them, or as a recording has them."""
 
 from __future__ import annotations
 
@@ -11,7 +11,8 @@ from ltlc.inputs.messages.texts import comments_in
 from ltlc.inputs.recordings import open_recording
 from ltlc.inputs.recordings.bags import BagRecording
 from ltlc.inputs.recordings.bags.plan import absolute
-from ltlc.inputs.recordings.rows import failure
+
+SILENT = "no message on it was recorded"
 
 _LINE = re.compile(r"(\S+) \[([\w/]+(?:, [\w/]+)*)\]", re.ASCII)
 
@@ -20,17 +21,21 @@ _LINE = re.compile(r"(\S+) \[([\w/]+(?:, [\w/]+)*)\]", re.ASCII)
 class Topic:
     """A topic, and the full name of its type; of several types all names, with commas.
 
-    It `is_silent` if it is recorded that no message came. `comments` are those of a definition, by message and field.
+    If nothing can be said of it, `omitted` is the reason. A column of a table that is omitted has no type.
+    `comments` are those of a definition, by message and field.
     """
 
     name: str
     type: str
-    is_silent: bool = False
+    omitted: str = ""
     comments: Mapping[tuple[str, str], str] = field(default_factory=dict, hash=False, compare=False)
+
+    def __str__(self) -> str:
+        return f"{self.name} [{self.type}]" if self.type else f"column `{self.name}`"
 
 
 class MalformedLineError(Exception):
-    """A line of a list of topics says no topic with a type."""
+    """A line of a list of topics is not a topic with a type."""
 
     def __init__(self, number: int, line: str) -> None:
         form = "`/scan [sensor_msgs/msg/LaserScan]`, as `ros2 topic list -t` writes it"
@@ -59,9 +64,8 @@ def _full(name: str) -> str:
 def recorded(path: Path) -> list[Topic]:
     """The topics of the bag at `path`, in the order of their names. Raises RecordingError."""
     recording = open_recording(path, {})
-    if not isinstance(recording, BagRecording):
-        raise failure("LTL807", path, f"`{path}` has no topics with types", "give a bag")
+    assert isinstance(recording, BagRecording), path
     return [
-        Topic(absolute(name), topic.type, topic.count == 0, comments_in(topic.type, topic.form, topic.definition))
-        for name, topic in sorted(recording.topics.items())
+        Topic(absolute(name), of.type, SILENT if of.count == 0 else "", comments_in(of.type, of.form, of.definition))
+        for name, of in sorted(recording.topics.items())
     ]

@@ -1,6 +1,6 @@
 """From characters to tokens: what stands at a place of the text, given what the grammar can take there.
 
-Topics and types are tokens only where the grammar expects them, so that `/odom` need not be told from a division.
+Topics and types are tokens only where the grammar expects them, so that `/odom` is not confused with a division.
 """
 
 from __future__ import annotations
@@ -78,7 +78,7 @@ FUNCTIONS = (*WRITTEN, "norm", "age")
 """What can be called."""
 
 QUANTIFIERS = ("any", "all", "count")
-"""What is said of all elements of arrays."""
+"""Quantifiers over the elements of arrays."""
 
 FOREIGN = {
     "&&": "and",

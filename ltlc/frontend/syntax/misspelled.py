@@ -15,6 +15,9 @@ _SPLIT = re.compile(
     r"|(?<=\.)orientation[ \t]+between|\bafter[ \t]+until)\b"
 )
 
+UNFINISHED = re.compile(r"\b(?:no|some|new)\s*/")
+"""What HPL has in front of a topic, and would be a division."""
+
 _NEXT = "`@{p, -1}` is the previous sample, as in `always (@{p, -1} implies q)`; if you meant a name, choose another"
 
 _LOOSE = frozenset({"<->", "<=>", "↔", "⇔", "<>", "iff", "xor"})

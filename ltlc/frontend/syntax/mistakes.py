@@ -1,4 +1,4 @@
-"""What is wrong where the parser cannot go on, said as a person would: the usual mistakes, a function for each."""
+"""What is wrong where the parser cannot go on, in plain words: a function for each usual mistake."""
 
 from __future__ import annotations
 

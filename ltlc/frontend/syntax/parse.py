@@ -18,7 +18,7 @@ from ltlc.base.codes import diagnostic
 from ltlc.base.diagnostics import Diagnostic, Help
 from ltlc.base.fixes import uncertain, writing
 from ltlc.base.source import Source, Span
-from ltlc.frontend.syntax import build, misspelled, mistakes, phrases
+from ltlc.frontend.syntax import build, misspelled
 from ltlc.frontend.syntax import tree as syntax
 from ltlc.frontend.syntax.lexer import END, TEMPORAL, Token, next_token, skip_blank
 
@@ -221,6 +221,8 @@ class _Parser:
             self.diagnostics[-1] = uncertain(self.diagnostics[-1])  # what is probably meant cannot stand here
         if token.problem:
             return
+        from ltlc.frontend.syntax import mistakes  # here, and below, what a text without mistakes does not need
+
         read = self._tokens()
         self._settle()
         situation = mistakes.Situation(
@@ -271,7 +273,7 @@ class _Parser:
         return token.terminal in TEMPORAL and not self.text[line_start : token.span.start].strip()
 
     def _tree(self) -> syntax.SyntaxTree:
-        """The commands that are complete and not nested too deeply, which the passes that follow could not bear."""
+        """The commands that are complete and not nested too deeply for the passes that follow."""
         commands = self._understood(self.stack.parts[0])
         shallow: list[syntax.Command] = []
         for command in commands:
@@ -279,12 +281,16 @@ class _Parser:
             if too_deep is None:
                 shallow.append(command)
             else:
+                from ltlc.frontend.syntax import mistakes
+
                 self.diagnostics.append(mistakes.too_deep(self.source, too_deep.span, MAX_DEPTH))
                 self.lost.append(self.text[command.span.start : command.span.end])
         return syntax.SyntaxTree(tuple(shallow), "\n".join(self.lost) if self.lost else None)
 
     def _foreign(self, line: Span) -> Diagnostic | None:
         """How a line is written that is in the words of others, if it is one."""
+        from ltlc.frontend.syntax import phrases
+
         written = self.source.text[line.start : line.end]
         found = phrases.meant(written, self.text, self._is_command)
         if found is None:
@@ -300,7 +306,7 @@ class _Parser:
         return not diagnostics and len(tree.commands) == 1
 
     def _understood(self, commands: list[syntax.Command]) -> list[syntax.Command]:
-        """`commands` without those on lines in the words of others that can be parsed: how they are written is told.
+        """`commands` without those on lines in another language's words that happen to parse; these are reported.
 
         Their properties run on, or divide by a topic.
         """
@@ -309,7 +315,7 @@ class _Parser:
             for first, second in pairwise(commands)
             if syntax.runs_on(self.text, first, second)
         }
-        divisions = (c for c in commands if phrases.UNFINISHED.search(self.text, c.span.start, c.span.end))
+        divisions = (c for c in commands if misspelled.UNFINISHED.search(self.text, c.span.start, c.span.end))
         lines |= {_line_at(self.text, command.span.start) for command in divisions}
         lines |= {_line_at(self.text, match.end()) for match in _BEGINS_WITH_TOPIC.finditer(self.text)}
         foreigners = {line: found for line in lines if (found := self._foreign(line))}

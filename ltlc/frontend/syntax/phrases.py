@@ -12,6 +12,7 @@ from functools import partial
 from typing import NamedTuple
 
 from ltlc.frontend.syntax.lexer import FOREIGN, FOREIGN_UNITS
+from ltlc.frontend.syntax.misspelled import UNFINISHED
 from ltlc.frontend.syntax.phrasebook import AT_FIRST, PHRASES, SECONDS, TEMPORAL
 
 LONGEST = 200
@@ -25,14 +26,11 @@ MOST_WAYS = 6
 
 
 class Meant(NamedTuple):
-    """The line to write instead of one in the words of others, and where it says something else."""
+    """The line to write instead of one in another language's words, and where it means something else."""
 
     text: str
     differs: tuple[str, ...]
 
-
-UNFINISHED = re.compile(r"\b(?:no|some|new)\s*/")
-"""What is left of HPL, and would be a division."""
 
 _MIXED = re.compile(rf"(?!(?:always|never|eventually)\b)[^()]*?\bimplies\s+\(?{TEMPORAL}.*")
 """What would be asked about: whether the condition is meant at the first step, or always."""
@@ -50,7 +48,7 @@ _DECLARED = re.compile(r"\bdecl\s+(\w+)\s+/?(\S+)\s+([\w/]+)(?:\.([\w.]+))?")
 
 
 def meant(line: str, text: str, is_accepted: Callable[[str], bool]) -> Meant | None:
-    """What `line` of `text` says in the words of others, as a line that `is_accepted`; None if it is no such line."""
+    """What `line` of `text` means in another language's words, as a line that `is_accepted`; None if nothing."""
     if len(line) > LONGEST:
         return None
     label, body = _labelled(line)

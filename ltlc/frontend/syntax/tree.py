@@ -78,7 +78,7 @@ class Reference(Node):
 
 @dataclass(frozen=True, slots=True)
 class Selection(Node):
-    """What follows an expression that is no name: `(goal - robot.position).x`, `@{goal, -1}.x`."""
+    """What follows an expression other than a name: `(goal - robot.position).x`, `@{goal, -1}.x`."""
 
     base: Node
     steps: tuple[Step, ...]

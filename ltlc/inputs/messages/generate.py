@@ -26,7 +26,7 @@ BESIDE = {
     "std_srvs/srv/SetBool": "bool data\n---\nbool success\nstring message\n",
     "std_srvs/srv/Trigger": "---\nbool success\nstring message\n",
 }
-"""What rosbags does not ship: Gazebo Classic's ground truth, which is no part of ROS 2, and services that many have."""
+"""What rosbags does not ship: Gazebo Classic's ground truth, which is not part of ROS 2, and common services."""
 
 
 def jazzy_definitions() -> dict[str, Any]:

@@ -33,7 +33,7 @@ class Recording(Protocol):
 
     @property
     def columns(self) -> tuple[str, ...]:
-        """What it has values of: signals, and in a table what is no signal, too."""
+        """What it has values of: signals, and in a table columns that are not signals, too."""
         ...
 
     @property
@@ -51,11 +51,11 @@ class Recording(Protocol):
         ...
 
     def remedy(self, name: str) -> str:
-        """What may help against that, as a sentence; empty if there is nothing to say."""
+        """What may help against that, as a sentence; or empty."""
         ...
 
     def remarks(self) -> list[Diagnostic]:
-        """What else is to be said of it, once it has been read."""
+        """Further findings, once it has been read."""
         ...
 
     def blocks(self) -> Iterator[Block]:
@@ -64,7 +64,7 @@ class Recording(Protocol):
 
 
 def is_recording(path: Path) -> bool:
-    """Whether what is at `path` is one recording, as far as names tell: a file of a known form, or a bag's folder."""
+    """Whether `path` is one recording, by its name: a file of a known form, or a bag's folder."""
     if os.path.isdir(path):
         return os.path.isfile(path / METADATA)  # False of a folder that may not be looked into
     return is_bag(path) or _table(path) is not None
@@ -90,7 +90,7 @@ def _table(path: Path) -> Callable[[Path], Table] | None:
 
 
 def open_recording(path: Path, signals: Mapping[str, Signal], reading: ReadOptions = DEFAULT) -> Recording:
-    """The recording at `path`; its format is told by the end of its name, a folder is a bag.
+    """The recording at `path`; the end of its name gives the format, a folder is a bag.
 
     Raises RecordingError if it cannot be read, cannot be a recording, or nothing of it can be wanted.
     """

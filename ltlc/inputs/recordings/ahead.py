@@ -1,4 +1,4 @@
-"""Pieces of a recording, on each of which work is done in other threads, some pieces ahead of who takes them."""
+"""Pieces of a recording that are worked on in other threads, some pieces ahead of the consumer."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ class Ahead(Generic[Piece, Made]):
         return piece, made.result()
 
     def given_back(self) -> Iterator[Piece]:
-        """The pieces that nobody has taken, the last one first: work on them is given up."""
+        """The pieces that were not taken, the last one first: work on them is given up."""
         while self._pieces:
             piece, made = self._pieces.pop()
             made.cancel()

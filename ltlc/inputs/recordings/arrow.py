@@ -116,7 +116,7 @@ def check_order(times: Times, previous: Nanoseconds | None) -> None:
 
 
 def samples(column: pa.Array, wanted: Column) -> Samples:
-    """What stands in a column; null is no sample. Raises OddError at what is no value of the signal."""
+    """The values of a column; null is no sample. Raises OddError at one that is not a value of the signal."""
     rows, column = there(column)
     try:
         return Samples(rows, _values(column, wanted))
@@ -185,7 +185,7 @@ def _numbers(column: pa.Array, wanted: Column) -> Array:
 
 
 def fitted(values: NDArray[np.float64], numbers: Numbers) -> NDArray[np.float64]:
-    """`values` as `rows.fitted` makes each. Raises OddError at one that is none of an integer's."""
+    """`values` as `rows.fitted` makes each. Raises OddError at one that does not fit an integer type."""
     if numbers == DOUBLES:
         return values
     if numbers.kind is Kind.SINGLE:

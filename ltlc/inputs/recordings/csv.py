@@ -1,6 +1,6 @@
 """Recordings as comma-separated values: a column of times in s, and one for each signal; an empty cell is no sample.
 
-What a cell means is said here, row by row. A piece in which nothing is odd is read by a library instead, by columns.
+The meaning of a cell is defined here, row by row. A piece without unusual contents is read by columns, by a library.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """The fence around all readers: whatever a damaged file makes them raise is a diagnostic about that file.
 
-Readers say themselves what they expect to be wrong. Files are written by others, though, and read by libraries of
-others, and nobody foresees all that a wrong byte does to them.
+Readers report the errors that they expect. But files and the libraries that read them are written by others, and
+nobody foresees all that a wrong byte does to them.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Rows that a program has: mappings of values by name, with `time` in s; None is no sample."""
+"""Rows from a program: mappings of values by name, with `time` in s; None is no sample."""
 
 from __future__ import annotations
 

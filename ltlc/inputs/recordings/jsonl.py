@@ -44,7 +44,7 @@ def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 
 
 class JsonlTable:
-    """A file of JSON lines; it is read piece by piece, twice: which signals it has only its end tells."""
+    """A file of JSON lines; it is read piece by piece, twice: which signals it has is known only at its end."""
 
     def __init__(self, path: Path) -> None:
         self._path = path

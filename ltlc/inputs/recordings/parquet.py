@@ -39,7 +39,7 @@ Batches = Callable[[Sequence[str]], Iterator["pa.RecordBatch"]]
 
 
 class ArrowTable:
-    """Columns of Arrow's, of the file at `path` or called so; they are read batch by batch. Raises RecordingError."""
+    """Columns of Arrow's, from the file at `path`, or named like it; read batch by batch. Raises RecordingError."""
 
     def __init__(self, path: Path, schema: pa.Schema, batches: Batches) -> None:
         self._path = path
@@ -125,7 +125,7 @@ class ArrowTable:
     def _wrong(
         self, row: str, place: int, previous: Nanoseconds | None, column: pa.Array, times: Times | None
     ) -> RecordingError:
-        """What is wrong with a time: it is none, or does not follow that before it."""
+        """What is wrong with a time: it is not a time, or does not follow the one before it."""
         if times is None:
             written = column[place : place + 1].cast("string")[0].as_py()
             message = f"{row}: `{written}` is not a time" if written else f"{row}: there is no time"
@@ -219,7 +219,7 @@ def arrow_table(path: Path, data: Any) -> ArrowTable:
 
 
 class _RowError(Exception):
-    """Something in a row of a block cannot be taken; what is to be said of it."""
+    """Something in a row of a block is invalid; the error to report."""
 
     def __init__(self, row: int, failure: RecordingError) -> None:
         self.row = row

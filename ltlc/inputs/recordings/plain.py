@@ -69,7 +69,7 @@ class Plain:
             return None
 
     def _has_odd_nan(self, table: pa.Table, piece: bytes) -> bool:
-        """Whether a NaN may have been written as in C, `nan(7)`, which is no number here."""
+        """Whether a NaN may be written as in C, `nan(7)`, which is not a number here."""
         from pyarrow import compute
 
         if b"(" not in piece:

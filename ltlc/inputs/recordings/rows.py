@@ -71,7 +71,7 @@ def time_of_row(path: Path, place: str, previous: Nanoseconds | None, written: s
 
 
 def calendar_help(written: str) -> str:
-    """How a time of a calendar (ISO 8601) is written in seconds; empty for what is no such time."""
+    """The help with a calendar time (ISO 8601) in seconds; empty if `written` is not one."""
     try:
         time = datetime.fromisoformat(written)
     except ValueError:
@@ -113,7 +113,7 @@ class Column:
 
     @property
     def wanted(self) -> str:
-        """What can stand in a cell, for somebody who has written something else."""
+        """What a cell may contain, for an error message."""
         if self.numbers.kind is Kind.INTEGER:
             several = "an array of whole numbers" if self.type is ValueType.NUMBERS else "a whole number"
             return f"{several} from {self.numbers.least} to {self.numbers.most}"
@@ -148,7 +148,7 @@ def number_from_text(text: str, numbers: Numbers) -> float:
 
 
 def fitted(value: float, numbers: Numbers) -> float:
-    """`value` as one of `numbers`; fractions and NaN are no integers. Raises NotAValueError."""
+    """`value` as one of `numbers`; fractions and NaN are not integers. Raises NotAValueError."""
     if numbers.kind is Kind.INTEGER and not numbers.has(value):
         raise NotAValueError
     return numbers.nearest(value)

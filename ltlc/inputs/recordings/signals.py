@@ -165,22 +165,22 @@ class FromTable:
         self._stamp = stamp
         self._table = table
         self._signals = signals
-        self._heads = table.heads
-        found = {name: _source(path, set(self._heads), signal) for name, signal in signals.items()}
+        self.heads = table.heads
+        found = {name: _source(path, set(self.heads), signal) for name, signal in signals.items()}
         self._sources = {name: source for name, source in found.items() if source is not None}
 
     @property
     def columns(self) -> tuple[str, ...]:
         """The signals that it has values of, and the heads that are read as none.
 
-        Not those by topic and field: whoever exports messages has all of their fields.
+        Not those by topic and field: exported messages have all of their fields.
         """
-        kept = [head for head in self._heads if head in self._sources or (head not in self.cells and head[:1] != "/")]
+        kept = [head for head in self.heads if head in self._sources or (head not in self.cells and head[:1] != "/")]
         return (*kept, *(name for name in self._sources if name not in kept))
 
     def absence(self, name: str) -> str:
         """Why there is no sample of the signal `name`."""
-        by_topic = any(head[:1] == "/" for head in self._heads)
+        by_topic = any(head[:1] == "/" for head in self.heads)
         wholes = [spelling.whole for spelling in spellings(self._signals[name])]
         heads = [f"`{whole}`" for whole in (wholes if by_topic else wholes[:1])]
         return f"the recording has no column {' or '.join(heads)}"
@@ -190,7 +190,7 @@ class FromTable:
         if near := did_you_mean(name, self.columns):
             return near
         _, *by_topic = spellings(self._signals[name])
-        unread = [head for head in self._heads if head not in self.cells and (by_topic or head[:1] != "/")]
+        unread = [head for head in self.heads if head not in self.cells and (by_topic or head[:1] != "/")]
         if not unread:
             return ""
         sought = by_topic[-1].whole if by_topic and unread[0][:1] == "/" else name
@@ -202,7 +202,7 @@ class FromTable:
 
     @property
     def beginning(self) -> Nanoseconds | None:
-        """That of its first row, which nothing says before."""
+        """That of its first row, unknown before it is read."""
         return None
 
     @property
@@ -211,7 +211,7 @@ class FromTable:
         return {}
 
     def remarks(self) -> list[Diagnostic]:
-        """That there are no headers, if their times are asked for; else, what is amiss in a table is an error."""
+        """That there are no headers, if their times are requested; other problems in a table are errors."""
         if self._stamp is not Stamp.HEADER:
             return []
         message = "the rows of a table have no headers: their time is in a column"

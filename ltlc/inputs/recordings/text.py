@@ -31,7 +31,7 @@ _MARK = b"\xef\xbb\xbf"
 class Text:
     """A text file that is open.
 
-    `line` is how many lines stand before the next piece, for whoever takes them to count.
+    `line` is how many lines come before the next piece; the consumer counts them.
     """
 
     def __init__(self, path: Path, file: Any) -> None:
@@ -105,7 +105,7 @@ class Text:
 def _last_end(text: bytes) -> int:
     """Where the last line ends of which the end is known, but for a line break between two quotes; 0 if there is none.
 
-    What quotes there are is not looked at closely: whoever reads the lines finds out, and puts them back.
+    Quotes are not looked at closely: the reader of the lines finds out, and puts them back.
     """
     end = _last_line(text)
     if b'"' in text and text.count(b'"', 0, end) % 2:
@@ -142,7 +142,7 @@ def _file(path: Path) -> Any:
 
 
 def _unreadable(path: Path, error: Exception) -> RecordingError:
-    """What to say of `error`: the file's, or that of what is compressed in it; each library has its own."""
+    """The message about `error`, of the file or of the compressed data in it; each library has its own."""
     if isinstance(error, OSError) and error.strerror is not None:
         return failure("LTL902", path, f"`{path}` cannot be read: {error.strerror}")
     return failure(

@@ -22,7 +22,7 @@ from ltlc.interfaces.building.targets import Target, UnfitError, target_of
 
 @dataclass(frozen=True)
 class Build:
-    """An output that the gate lets pass: `files` by their paths, and what else is to be said, `diagnostics`.
+    """An output that passed the gate: `files` by their paths, and other `diagnostics`.
 
     `judgements` has for each property, by its label, the size of its monitor and what was checked.
     """

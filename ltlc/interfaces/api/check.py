@@ -19,7 +19,7 @@ from ltlc.interfaces.api.prepare import Text, encoding_of, folders, read
 from ltlc.specification.requirements import Requirement
 
 SECONDS = 30.0
-"""What all analyses together may use, where nothing else is said."""
+"""The default limits of all analyses together."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -82,7 +82,7 @@ def _frame(page: str) -> str:
 
 
 def build_html(judgements: Mapping[str, str], compiled: Sequence[Compiled]) -> str:
-    """What the gate says of each property, and its monitor as a picture."""
+    """The gate's result for each property, and its monitor as a picture."""
     rows = tuple((printable(label), told) for label, told in judgements.items())
     return as_fragment([Table(("property", "monitor"), rows)]) + "".join(map(_picture, compiled))
 

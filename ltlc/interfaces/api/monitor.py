@@ -104,7 +104,7 @@ class LiveRun:
         """Take a row, of what was sampled at `time`, in s, or `time_ns`; what has changed by it, and by time before it.
 
         Values are numbers, booleans, strings, or lists of these; None is no sample. `values` may have the time, too, in
-        s, as `time`. A row without samples says that the run was watched until then. Raises UnusableInput, and then the
+        s, as `time`. A row without samples only moves time on. Raises UnusableInput, and then the
         row is as if it had not come.
         """
         if self._run is not None:

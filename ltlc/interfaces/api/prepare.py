@@ -1,4 +1,4 @@
-"""From a text or a file to what judges runs: the specification with its monitors, or an exception that says why not."""
+"""From a text or a file to monitors of runs, or an exception that says why there are none."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ FILES = (".txt", ".ltlc")
 
 @dataclass(frozen=True)
 class Prepared:
-    """A specification with its monitors, each made within `budget`, and what else is to be said about it."""
+    """A specification with its monitors, each made within `budget`, and further findings."""
 
     specification: Specification
     compiled: Sequence[Compiled]
@@ -45,7 +45,7 @@ class Prepared:
 
     @cached_property
     def late(self) -> tuple[Diagnostic, ...]:
-        """A warning for each property whose verdicts may come late: whoever runs these monitors says so."""
+        """A warning for each property whose verdicts may come late, to be reported when these monitors run."""
         from ltlc.assurance.exactness import late_verdicts
 
         return tuple(late_verdicts(self.specification.source, self.compiled, self.budget))

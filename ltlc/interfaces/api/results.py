@@ -100,7 +100,7 @@ class Run(Mapping[str, PropertyResult]):
 
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
-        """What else is to be said about the recording."""
+        """Further findings about the recording."""
         return self._report.diagnostics
 
     @property
@@ -110,7 +110,7 @@ class Run(Mapping[str, PropertyResult]):
 
     @property
     def exit_code(self) -> int:
-        """That of `ltlc run`: 0 all hold; 1 one is violated; 2 damaged; 3 one is owed or never started."""
+        """As of `ltlc run`: 0 all hold; 1 one is violated; 2 damaged; 3 one has an obligation open or never started."""
         return self._report.exit_code
 
     def text(self) -> str:

@@ -22,7 +22,7 @@ from ltlc.interfaces.api.times import Seconds, limit_of, needs_time
 from ltlc.monitoring.judging.run import Judge, Open
 
 Row = Mapping[str, object]
-"""Values by signal; what is not there, or None, is no sample."""
+"""Values by signal; a signal that is missing or None has no sample."""
 
 Rows = Iterable[Row] | Iterable[tuple[Seconds, Row]]
 """Rows with the key `time`, in seconds, or each after its time."""

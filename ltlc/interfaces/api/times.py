@@ -17,7 +17,7 @@ Seconds = float | str | Decimal
 
 
 def limit_of(seconds: Seconds) -> Limit:
-    """A time of a recording, or, as in "+10", one since its beginning. Raises UnusableInput if that is no time."""
+    """A time of a recording or, as in "+10", since its beginning. Raises UnusableInput if it is not a time."""
     try:
         return limit(str(seconds))
     except ValueError:

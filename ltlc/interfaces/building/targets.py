@@ -39,7 +39,7 @@ class Made:
 
 
 class UnfitError(Exception):
-    """Properties have no form in the target; `diagnostics` say which, and why."""
+    """Properties that the target cannot express; `diagnostics` say which, and why."""
 
     def __init__(self, diagnostics: Sequence[Diagnostic]) -> None:
         super().__init__("the target does not support some of the properties")
@@ -56,7 +56,7 @@ class Target(Protocol):
 
     @property
     def told(self) -> Sequence[Path]:
-        """What is said to have been written."""
+        """The message about what was written."""
         ...
 
     def refuse(self) -> None:
@@ -208,7 +208,7 @@ class _Package:
 
     @cached_property
     def metadata(self) -> Metadata:
-        """What the package that stands there says of itself. Raises OSError if something else does."""
+        """The manifest of the package that is there. Raises OSError if something else is."""
         return earlier(self.path)
 
     def refuse(self) -> None:

@@ -42,7 +42,7 @@ def add_outputs(parser: argparse.ArgumentParser) -> None:
 
 
 def refuse_unusable(options: argparse.Namespace) -> None:
-    """Raise UnusableError if an option is of no use, or a file is not to be written."""
+    """Raise UnusableError if an option has no effect, or a file must not be written."""
     if options.sign and not (options.statement or options.page):
         raise UnusableError("--sign needs --statement or --page, whose files it signs")
     found = [path for path in (options.statement, options.page) if path]

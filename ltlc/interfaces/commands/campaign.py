@@ -73,7 +73,7 @@ def run_several(judge: Judge, found: Found, options: argparse.Namespace) -> int:
 
 
 def _judge(judge: Judge, found: Found, options: argparse.Namespace, page: Page | None) -> Tally:
-    """Judge what was found, and tell it as it comes, on a `page` too. Raises EngineError, ResultsError."""
+    """Judge what was found, and report results as they come, on a `page` too. Raises EngineError, ResultsError."""
     tally, form, remarks = Tally(), FORMS[options.format](), Remarks(judge.remarks)
     report(judge.remarks)
     numbers = {place.name: number for number, place in enumerate(found.places)}
@@ -109,7 +109,7 @@ def _judge(judge: Judge, found: Found, options: argparse.Namespace, page: Page |
 
 
 def _digest(judge: Judge, options: argparse.Namespace) -> str:
-    """What tells whether an earlier campaign judged with the same: the text, the monitors as code, and the settings."""
+    """What identifies how a campaign judged: the text, the monitors as code, and the settings."""
     code = plan_code(judge.compiled, judge.specification, ())
     text = judge.specification.source.text
     return digest([text, options.encoding, code, repr(judge.reading)])
@@ -127,7 +127,7 @@ def _workers(options: argparse.Namespace, count: int) -> Iterator[Workers]:
 def _watched(
     outcomes: Iterator[Outcome], count: int, options: argparse.Namespace, results: Results | None
 ) -> Iterator[Outcome]:
-    """`outcomes`, each kept in the table of results; how far they are is shown where lines on stdout do not say it."""
+    """`outcomes`, each kept in the table of results; progress is shown unless lines on stdout show it."""
     with progress("judging", options.quiet) as watch:
         for done, outcome in enumerate(outcomes, 1):
             if results:
@@ -158,7 +158,7 @@ class Remarks:
                 self._counts[key] = self._counts.get(key, 0) + 1
 
     def tell(self, recordings: int) -> None:
-        """Show what is no error."""
+        """Show warnings and notes."""
         told = (
             replace(each, message=f"{each.message} (in {self._counts[key]} of {recordings} recordings)")
             for key, each in self._first.items()

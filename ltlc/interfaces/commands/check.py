@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from ltlc.analysis.examine import Examined
 
 ABOUT_RECORDINGS = ("LTL80", "LTL81", "LTL82")
-"""How the codes begin that say that a recording cannot be used."""
+"""What codes about unusable recordings begin with."""
 
 TEXT = ("full", "concise")
 """The forms that are for people."""
@@ -95,7 +95,7 @@ def _run(options: argparse.Namespace) -> int:
 
 
 def _check(path: Path, options: argparse.Namespace, ids: dict[str, str]) -> tuple[Check, int]:
-    """What is to be said of a file, after it is fixed if that is asked for, and how often it was fixed.
+    """The findings about a file, once it is fixed if that was requested, and the number of fixes.
 
     Those `ids` of requirements have been given, each in a file; its own are added. Raises SpotMissing and
     NotFixedError.

@@ -26,7 +26,7 @@ OK, FINDING, UNUSABLE, UNDECIDED = 0, 1, 2, 3
 not decided."""
 
 ABOUT_FILES = "LTL9"
-"""How the codes begin that say that a file cannot be read, or is no specification at all."""
+"""What codes begin with for files that cannot be read, or are not specifications."""
 
 
 def report(diagnostics: Sequence[Diagnostic]) -> None:
@@ -106,7 +106,7 @@ def overwritten(outputs: Sequence[Path | None], inputs: Sequence[str | Path]) ->
 
 
 def refused(path: Path) -> int:
-    """Say that `path` is not to be overwritten; the exit code for that."""
+    """Report that `path` must not be overwritten; the exit code."""
     return unusable(f"{path} is not written: that file is an input, or another output; give another name")
 
 

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from ltlc.interfaces.commands.common import OK
 from ltlc.interfaces.commands.parser import COMMANDS, parser_of
 
-FILES = ("PROPS", "PROPS_OR_CODE", "RECORDING", "BAG", "CERTIFICATE", "PATH", "FILE")
+FILES = ("PROPS", "PROPS_OR_CODE", "RECORDING", "CERTIFICATE", "PATH", "FILE")
 """How what is asked for begins where a file is."""
 
 

@@ -85,7 +85,7 @@ def _are_read_back(code: Code, compiled: Sequence[Compiled], specification: Spec
 
 
 def _read_back(compiled: Compiled, part: Written | Difference) -> ReadBack | Difference:
-    """Whether the text says the machine, and the machine is the certified monitor."""
+    """Whether the text is the machine, and the machine is the certified monitor."""
     if isinstance(part, Difference):
         return part
     lowered = compare(compiled.machine, _judged(compiled))

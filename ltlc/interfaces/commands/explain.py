@@ -88,7 +88,7 @@ _SHOWS = {Verdict.VIOLATED: "refute", Verdict.SATISFIED: "prove"}
 
 
 def _monitor_text(explained: Explanation) -> str:
-    """The size of the monitor, and what it can say."""
+    """The size of the monitor, and the verdicts that it can give."""
     if explained.states is None:
         return "takes too long to make"
     number = f"{explained.states} state{'' if explained.states == 1 else 's'}"

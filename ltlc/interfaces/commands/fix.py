@@ -54,7 +54,7 @@ def show_difference(path: Path, options: argparse.Namespace) -> int:
 
 
 def _fixed(source: Source, options: argparse.Namespace) -> tuple[Source, list[str]]:
-    """`source` after all certain fixes of what its text says, and each of them in words."""
+    """`source` after all unambiguous fixes, and a description of each."""
     done: list[str] = []
     for _ in range(ROUNDS):
         _, found = load_text(source, options.msg_path, ENCODINGS[options.encoding], options.recording)

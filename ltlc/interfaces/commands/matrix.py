@@ -81,7 +81,7 @@ def _loaded(path: Path, options: argparse.Namespace) -> Specification | int:
 
 
 class _ListError(Exception):
-    """The list of requirements cannot be used, as the text says."""
+    """The list of requirements cannot be used; the text says why."""
 
 
 def _listed(path: Path) -> dict[str, str]:

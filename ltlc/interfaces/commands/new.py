@@ -12,8 +12,10 @@ from ltlc.base.files import write_text
 from ltlc.base.source import Source
 from ltlc.frontend.language import types_for
 from ltlc.frontend.starter import Draft
+from ltlc.frontend.starter.columns import tabled
 from ltlc.frontend.starter.topics import MalformedLineError, Topic, listed, recorded
 from ltlc.inputs.recordings import RecordingError
+from ltlc.inputs.recordings.bags import is_bag
 from ltlc.interfaces.commands import arguments
 from ltlc.interfaces.commands.common import OK, UNUSABLE, report, unusable, unwritable
 from ltlc.monitoring.measuring.measure import measure
@@ -22,11 +24,11 @@ from ltlc.monitoring.measuring.measure import measure
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """What `ltlc new` takes."""
     parser.add_argument(
-        "bag",
-        metavar="BAG",
+        "recording",
+        metavar="RECORDING",
         nargs="?",
         type=Path,
-        help="a bag with the topics; without it, the output of `ros2 topic list -t` is read from stdin",
+        help="a bag, .csv, .jsonl or .parquet; without it, the output of `ros2 topic list -t` is read from stdin",
     )
     parser.add_argument(
         "-o", "--output", type=Path, metavar="FILE", help="a file that does not exist yet (default: stdout)"
@@ -35,13 +37,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Write a specification about the topics of a bag, or of those on standard input."""
+    """Write a specification about the topics of a recording, or of those on standard input."""
     if options.output is not None and options.output.exists():
         return unusable(f"{options.output} already exists and is not overwritten")
-    if options.bag is None and sys.stdin.isatty():
-        return unusable("give a bag, or the topics on standard input: `ros2 topic list -t | ltlc new`")
+    if options.recording is None and sys.stdin.isatty():
+        return unusable("give a recording, or the topics on standard input: `ros2 topic list -t | ltlc new`")
     try:
-        topics = _topics(options.bag)
+        topics = _topics(options.recording)
     except MalformedLineError as error:
         return unusable(str(error))
     except UnicodeDecodeError as error:
@@ -49,30 +51,32 @@ def run(options: argparse.Namespace) -> int:
     except RecordingError as error:
         report([error.diagnostic])
         return UNUSABLE
-    bags = [] if options.bag is None else [options.bag]
-    types, problems = types_for(Source("ltlc new", ""), options.msg_path, bags)
+    recordings = [] if options.recording is None else [options.recording]
+    types, problems = types_for(Source("ltlc new", ""), options.msg_path, recordings)
     report(problems)
     if problems:
         return UNUSABLE
     draft = Draft(topics, types)
     if draft.is_empty:
         return unusable(_nothing(draft))
-    if options.bag is None:
+    if options.recording is None:
         return _write(draft.text("a list of topics"), options.output)
     try:
-        measured = measure(draft.declarations, draft.probes, options.bag, options.msg_path)
+        measured = measure(draft.declarations, draft.probes, options.recording, options.msg_path)
     except RecordingError as error:
         report([error.diagnostic])
         return UNUSABLE
     except SpotMissing as error:
         return unusable(str(error))
-    name = options.bag.resolve().name
-    return _write(draft.text(name, name, measured), options.output)
+    text = draft.text(options.recording.resolve().name, measured, is_table=not is_bag(options.recording))
+    return _write(text, options.output)
 
 
-def _topics(bag: Path | None) -> Sequence[Topic]:
+def _topics(path: Path | None) -> Sequence[Topic]:
     """Raises MalformedLineError, UnicodeDecodeError and RecordingError."""
-    return listed(sys.stdin.read()) if bag is None else recorded(bag)
+    if path is None:
+        return listed(sys.stdin.read())
+    return recorded(path) if is_bag(path) else tabled(path)
 
 
 def _nothing(draft: Draft) -> str:

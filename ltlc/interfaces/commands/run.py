@@ -182,7 +182,7 @@ def _run_one(judge: Judge, path: Path, options: argparse.Namespace) -> int:
 
 @contextmanager
 def _progress(path: Path, quiet: bool) -> Iterator[list[Watcher]]:
-    """What says on a terminal how far a recording has been judged."""
+    """Shows on a terminal how much of a recording has been judged."""
     rows, scale = 0, Scale()
     with saying(f"judging {printable(path.name)}", quiet) as say:
 

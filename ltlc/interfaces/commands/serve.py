@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import errno
+import signal
 import sys
 from pathlib import Path
 
@@ -66,6 +67,9 @@ def run(options: argparse.Namespace) -> int:
         server = Server(options.host, options.port, start)
     except OSError as error:
         return unusable(_unserved(options.host, options.port, error))
+    signal.signal(
+        signal.SIGTERM, signal.default_int_handler
+    )  # files that are dropped on the page are removed then, too
     with server:
         try:
             if not is_local(options.host):

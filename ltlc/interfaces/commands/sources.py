@@ -28,7 +28,7 @@ def found_in(named: Sequence[Path]) -> tuple[list[Path], list[Diagnostic]]:
 
 
 def _below(folder: Path) -> Iterator[Path]:
-    """The specifications in `folder` and the folders in it; what is hidden is passed over."""
+    """The specifications in `folder` and its folders, without hidden ones."""
     for name, folders, files in os.walk(folder):
         folders[:] = sorted(each for each in folders if not each.startswith("."))
         yield from (Path(name) / each for each in sorted(files) if each.endswith(SUFFIX) and not each.startswith("."))

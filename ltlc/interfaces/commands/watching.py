@@ -19,7 +19,7 @@ TEXT = ("text", "full", "concise")
 """The forms that are for people."""
 
 Files = dict[str, tuple[int, int, int]]
-"""What tells that a file has changed: its identity, its size, and when it was written last."""
+"""What changes when a file does: its identity, its size, and when it was last written."""
 
 
 def add_watch(parser: argparse.ArgumentParser) -> None:

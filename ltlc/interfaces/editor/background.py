@@ -65,7 +65,7 @@ def analysed(
 ) -> Analysed:
     """What `ltlc check` says of `specification`, of which the front end says `diagnostics`. Raises SpotMissing.
 
-    The process is made to wait for others, and so are its children: who types goes first.
+    The process and its children have a low priority, so that typing is not slowed down.
     """
     from ltlc.analysis.examine import examine_loaded
     from ltlc.interfaces.api.check import check_of

@@ -29,7 +29,7 @@ class Hover(NamedTuple):
 
 
 def hover(document: Document, offset: int, diagnostics: Sequence[Diagnostic]) -> Hover | None:
-    """What there is to say of the character at `offset`, where `diagnostics` are known; None if there is nothing."""
+    """The text about the character at `offset`, with `diagnostics` there; None if there is none."""
     word = document.word_at(offset)
     span, parts = (word.span, [*_of_word(document, word)]) if word else _of_text(document, offset)
     for found in diagnostics:
@@ -105,7 +105,7 @@ def _holds(outer: Span, inner: Span) -> bool:
 
 
 def _of_text(document: Document, offset: int) -> tuple[Span | None, list[str]]:
-    """What is said of a place that is no name: of a keyword, or of a code in a comment."""
+    """The text about a place other than a name: a keyword, or a code in a comment."""
     for each in suppressions(document.source):
         if each.span.start <= offset <= each.span.end and each.code in CODES:
             return each.span, [page(each.code)]
@@ -118,7 +118,7 @@ def _of_text(document: Document, offset: int) -> tuple[Span | None, list[str]]:
 
 
 def _of_numbers(document: Document, offset: int) -> tuple[Span | None, list[str]]:
-    """What is said of the numbers of a window of samples, or of an interval."""
+    """The text about the numbers of a window of samples, or of an interval."""
     for node in (node for command in document.tree.commands for node, _ in syntax.walk(command)):
         if not node.span.start <= offset <= node.span.end:
             continue

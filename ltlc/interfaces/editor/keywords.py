@@ -9,7 +9,7 @@ from ltlc.specification.functions import WRITTEN
 
 
 class Meaning(NamedTuple):
-    """How a construction is written, and what it says."""
+    """How a construction is written, and what it means."""
 
     form: str
     says: str

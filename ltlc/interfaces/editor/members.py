@@ -19,7 +19,7 @@ _TEMPLATE = re.compile(r"\{(\w+)\}")
 
 
 class Suggestion(NamedTuple):
-    """What may be written, what kind of thing that is, and what is said of it."""
+    """What may be written, its kind, and its description."""
 
     text: str
     kind: str
@@ -55,7 +55,7 @@ def _reference(base: str, variables: Mapping[str, str]) -> syntax.Reference | No
 
 
 def _of_thing(document: Document, name: str, steps: list[str]) -> Iterator[Suggestion]:
-    """What can be said of an object, or a robot."""
+    """The primitives of an object, or a robot."""
     match steps:
         case []:
             for primitive in PRIMITIVES:
@@ -88,7 +88,7 @@ def _components(document: Document, node: syntax.Reference) -> Iterator[Suggesti
 
 
 def _constants(document: Document, message: str) -> Iterator[Suggestion]:
-    """The constants of the messages that are called so."""
+    """The constants of the messages of that name."""
     types = document.reading.checker.types
     for full in types.find(message):
         for name, value in types.messages[full].constants.items():

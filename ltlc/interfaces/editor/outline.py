@@ -27,7 +27,7 @@ class EntryKind(Enum):
 
 
 class Entry(NamedTuple):
-    """A command: what it is called, what it says, all of its text, and the part of that which names it."""
+    """A command: its name, its meaning, the span of its text, and that of its name."""
 
     kind: EntryKind
     name: str

@@ -58,7 +58,7 @@ Result = TypeVar("Result")
 
 @dataclass
 class Opened:
-    """A text in an editor, what was last said of it, and the task that goes on with that."""
+    """A text in an editor, its latest findings, and the task that looks for more."""
 
     text: str
     version: int
@@ -123,7 +123,7 @@ class Server(LanguageServer):
         return opened.view
 
     def changed(self, uri: str, text: str, version: int, delay: float) -> None:
-        """Take note of a new text, and say after `delay` seconds what there is to say of it."""
+        """Take a new text, and publish its findings after `delay` seconds."""
         last = self.closed(uri)
         self.opened[uri] = Opened(text, version, summaries=last.summaries if last else {})
         self.opened[uri].task = asyncio.create_task(self._follow(uri, self.opened[uri], delay))
@@ -136,7 +136,7 @@ class Server(LanguageServer):
         return last
 
     async def _follow(self, uri: str, opened: Opened, delay: float) -> None:
-        """Publish what the front end says, then what analyses find; cancelled when the text changes."""
+        """Publish the front end's findings, then those of the analyses; cancelled when the text changes."""
         await asyncio.sleep(delay)
         read = self.view(uri).document
         self._publish(uri, opened, self._at_once(read))
@@ -166,7 +166,7 @@ class Server(LanguageServer):
             self.workspace_code_lens_refresh(None)
 
     async def in_child(self, job: Callable[[], Result]) -> Result | None:
-        """What `job` returns in a child process, which ends if this is cancelled; None, said in words, if it fails."""
+        """What `job` returns in a child process, ended if this is cancelled; None, after a message, if it fails."""
         stop = threading.Event()
         try:
             found = await asyncio.to_thread(in_child, job, stop)
@@ -351,7 +351,7 @@ _FEATURES: dict[str, tuple[Callable[..., Any], Any]] = {
     types.TEXT_DOCUMENT_SEMANTIC_TOKENS_FULL: (_tokens, messages.LEGEND),
     types.TEXT_DOCUMENT_CODE_LENS: (_lenses, None),
 }
-"""What answers which request or notification, with what is said of that in the beginning."""
+"""The handler of each request and notification, with the options that are registered for it."""
 
 
 def _is_fault(record: logging.LogRecord) -> bool:

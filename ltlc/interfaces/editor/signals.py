@@ -19,7 +19,7 @@ from ltlc.specification.text import number_text
 
 
 def described(document: Document, node: syntax.Reference) -> str | None:
-    """What `node` stands for, in Markdown; None if that cannot be told."""
+    """What `node` stands for, in Markdown; None if that is unknown."""
     value = document.value(node)
     if value is None:
         return None
@@ -69,7 +69,7 @@ def _sources(value: Value, types: MessageTypes) -> Iterator[str]:
 
 
 def _path(field: Field) -> str:
-    """The path of `field` as a declaration has it, as far as it can say it."""
+    """The path of `field` as a declaration has it, as far as it can be declared."""
     text = field.message.replace("/msg/", "/")
     for step in field.path:
         match step:

@@ -1,4 +1,4 @@
-"""The names in a text and what each stands for, as far as the syntax tells: what is renamed, found and coloured."""
+"""The names in a text and what each stands for, from the syntax alone: what is renamed, found and coloured."""
 
 from __future__ import annotations
 
@@ -121,7 +121,7 @@ class _Finder:
                 pass
 
     def _setting(self, name: syntax.Word, value: syntax.Node) -> Iterator[Word]:
-        """The value of a setting; that of `_simulator_` is no name of the file's."""
+        """The value of a setting; that of `_simulator_` is not a name in the file."""
         if isinstance(value, syntax.Word):
             yield _word(WordKind.TOPIC, value)
         elif name.text == "_simulator_" and isinstance(value, syntax.Reference):
@@ -181,7 +181,7 @@ def _source(command: syntax.Declaration | syntax.ObjectFromTopic) -> Iterator[Wo
 
 
 def _part(word: syntax.Word, is_thing: bool, variables: Variables) -> Iterator[Word]:
-    """A word of a reference that is no attribute, and the variables in it."""
+    """A word of a reference other than an attribute, and the variables in it."""
     if "{" in word.text:
         yield _word(WordKind.TEMPLATE, word)
         for match in _VARIABLE.finditer(word.text):

@@ -22,7 +22,7 @@ SAYS = {
     Verdict.PRESUMABLY_VIOLATED: "Not fulfilled at the end of the recording: something was still owed",
     Verdict.NOT_STARTED: "Not judged: something that it reads never had a value",
 }
-"""What a verdict says of a recording."""
+"""What a verdict means for a recording."""
 
 _CLAIMED = {"accepted": "", "unchecked": "Claimed, but not checked whole: ", "refused": "NOT shown, but claimed: "}
 """What stands before a verdict."""

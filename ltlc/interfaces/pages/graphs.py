@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
 
 from ltlc.semantics.verdicts import Verdict
 
-ROW, RADIUS, MARGIN, GAP = 150, 24, 70, 170
+ROW, RADIUS, MARGIN, GAP = 170, 24, 70, 170
 """Distances in the picture, in pixels: GAP is between two columns, more where labels are long."""
 
 LETTER, LINE = 6, 14
@@ -17,6 +17,18 @@ LETTER, LINE = 6, 14
 
 LONGEST_LINE, MOST_LINES = 34, 3
 """A longer label is cut off; the whole is shown where the mouse rests."""
+
+NAME = 110
+"""About the width of the longest name of a verdict."""
+
+PARTS = 16
+"""A label may stand beside so many places along an edge."""
+
+BOW, MOST_BOWS = 15, 12
+"""An edge bows by so much more, and so often at most, until it passes no state."""
+
+CROSSED = 30
+"""What it costs a label to cover a point of another edge, where covering a state or a label costs its area."""
 
 COLOURS = {
     Verdict.VIOLATED: "#e6675f",
@@ -46,6 +58,35 @@ class _Point:
     y: float
 
 
+@dataclass(frozen=True, slots=True)
+class _Box:
+    """What a text or a state covers, `middle` being its middle."""
+
+    middle: _Point
+    width: float
+    height: float
+
+    def shared(self, other: _Box) -> float:
+        """The area that both cover."""
+        across = (self.width + other.width) / 2 - abs(self.middle.x - other.middle.x)
+        down = (self.height + other.height) / 2 - abs(self.middle.y - other.middle.y)
+        return max(0.0, across) * max(0.0, down)
+
+    def covers(self, point: _Point) -> bool:
+        """Whether `point` is inside."""
+        across, down = abs(self.middle.x - point.x), abs(self.middle.y - point.y)
+        return across <= self.width / 2 and down <= self.height / 2
+
+
+@dataclass(frozen=True, slots=True)
+class _Way:
+    """How an edge runs: its path in SVG, points along it, and where its label may stand, the best place first."""
+
+    path: str
+    points: tuple[_Point, ...]
+    labels: tuple[_Box, ...]
+
+
 def graph_svg(
     verdicts: Sequence[Verdict], edges: Sequence[Edge], last: int | None = None, name: str = "monitor"
 ) -> str:
@@ -55,10 +96,13 @@ def graph_svg(
     names, of letters, digits and `-`: a browser that hides one hides what others have in common with it.
     """
     places = _places(len(verdicts), edges)
-    width = max(place.x for place in places.values()) + MARGIN + RADIUS
-    height = max(place.y for place in places.values()) + RADIUS + 30
+    ways = {edge: _loop(places, edge) if edge.source == edge.target else _arc(places, edge) for edge in edges}
+    labels = _labels(places, ways)
+    boxes = [*labels.values(), *(box for place in places.values() for box in _covered(place))]
+    width = max(box.middle.x + box.width / 2 for box in boxes) + 10
+    height = max(box.middle.y + box.height / 2 for box in boxes) + 10
     tip = f'marker-end="url(#{name}-tip)"'
-    drawn = [_edge(edge, places, tip) for edge in sorted(edges, key=lambda edge: bool(edge.taken))]
+    drawn = [_edge(e, ways[e].path, labels[e], tip) for e in sorted(edges, key=lambda edge: bool(edge.taken))]
     passed = {state for edge in edges if edge.taken for state in (edge.source, edge.target)}
     states = [_state(q, places[q], verdicts[q], q in passed, q == last) for q in places]
     size = f'width="{width:.0f}" height="{height:.0f}" viewBox="0 0 {width:.0f} {height:.0f}"'
@@ -95,6 +139,29 @@ def _places(count: int, edges: Sequence[Edge]) -> dict[int, _Point]:
     return places
 
 
+def _covered(place: _Point) -> list[_Box]:
+    """What a state and its name cover."""
+    name = _Box(_Point(place.x, place.y + RADIUS + 14), NAME, LINE)
+    return [_Box(place, 2 * RADIUS + 10, 2 * RADIUS + 10), name]
+
+
+def _labels(places: Mapping[int, _Point], ways: Mapping[Edge, _Way]) -> dict[Edge, _Box]:
+    """Where the label of each edge stands: where it covers least of states, other labels and other edges."""
+    covered = [box for place in places.values() for box in _covered(place)]
+    found: dict[Edge, _Box] = {}
+    for edge in sorted(ways, key=lambda edge: len(ways[edge].labels)):
+        others = [point for other, way in ways.items() if other != edge for point in way.points]
+
+        def cost(box: _Box, others: Sequence[_Point] = others) -> float:
+            outside = max(0.0, box.width / 2 - box.middle.x) + max(0.0, box.height / 2 - box.middle.y)
+            crossed = sum(box.covers(point) for point in others)
+            return sum(map(box.shared, covered)) + CROSSED * crossed + 1000 * outside
+
+        found[edge] = min(ways[edge].labels, key=cost)
+        covered.append(found[edge])
+    return found
+
+
 def _state(number: int, place: _Point, verdict: Verdict, is_passed: bool, is_last: bool) -> str:
     name = verdict.value.replace("_", " ")
     at = f'cx="{place.x:.0f}" cy="{place.y:.0f}"'
@@ -118,17 +185,14 @@ def _circle(place: _Point, radius: int) -> str:
     )
 
 
-def _edge(edge: Edge, places: dict[int, _Point], tip: str) -> str:
-    start, end = places[edge.source], places[edge.target]
-    path, at = _loop(start) if edge.source == edge.target else _arc(start, end, edge.by_time)
-    is_below = end.x < start.x
+def _edge(edge: Edge, path: str, label: _Box, tip: str) -> str:
     classes = f"edge{' by-time' if edge.by_time else ''}{' taken' if edge.taken else ''}"
     dashes = ' stroke-dasharray="5 4"' if edge.by_time else ""
     width = ' stroke-width="2.5"' if edge.taken else ""
-    lines = _lines(edge)
-    top = at.y if is_below else at.y - LINE * (len(lines) - 1)
+    first = label.middle.y - label.height / 2 + LINE - 3
     spans = "".join(
-        f'<tspan x="{at.x:.0f}" y="{top + LINE * n:.0f}">{escape(line)}</tspan>' for n, line in enumerate(lines)
+        f'<tspan x="{label.middle.x:.0f}" y="{first + LINE * n:.0f}">{escape(line)}</tspan>'
+        for n, line in enumerate(_lines(edge))
     )
     whole = " or ".join(edge.label) + (f" ({edge.taken})" if edge.taken else "")
     return (
@@ -146,26 +210,49 @@ def _lines(edge: Edge) -> list[str]:
     return [*joined, *more, *([edge.taken] if edge.taken else [])]
 
 
-def _loop(place: _Point) -> tuple[str, _Point]:
-    """An arc over a state, and where its label stands."""
-    x, top = place.x, place.y - RADIUS
+def _box(edge: Edge, middle: _Point) -> _Box:
+    """What its label covers there."""
+    lines = _lines(edge)
+    return _Box(middle, LETTER * max(map(len, lines)), LINE * len(lines))
+
+
+def _loop(places: Mapping[int, _Point], edge: Edge) -> _Way:
+    """An arc over a state, its label above it."""
+    x, top = places[edge.source].x, places[edge.source].y - RADIUS
     path = (
         f"M{x - 9:.0f},{top + 3:.0f} C{x - 26:.0f},{top - 30:.0f} {x + 26:.0f},{top - 30:.0f} {x + 9:.0f},{top + 3:.0f}"
     )
-    return path, _Point(x, top - 27)
+    return _Way(path, (_Point(x, top - 10),), (_box(edge, _Point(x, top - 24 - LINE * len(_lines(edge)) / 2)),))
 
 
-def _arc(start: _Point, end: _Point, by_time: bool) -> tuple[str, _Point]:
-    """A bow to the left of the straight way, so that ways there and back do not meet, and where its label stands."""
+def _arc(places: Mapping[int, _Point], edge: Edge) -> _Way:
+    """A bow to the left of the straight way, so that ways there and back do not meet; its label stands beside it."""
+    start, end = places[edge.source], places[edge.target]
     length = math.hypot(end.x - start.x, end.y - start.y)
     along = _Point((end.x - start.x) / length, (end.y - start.y) / length)
-    bow = 18 + 0.12 * length + (50 if by_time else 0)
-    middle = _Point((start.x + end.x) / 2 + along.y * bow, (start.y + end.y) / 2 - along.x * bow)
-    first, last = _rim(start, middle), _rim(end, middle)
+    others = [place for state, place in places.items() if state not in (edge.source, edge.target)]
+    least = 18 + 0.12 * length + (50 if edge.by_time else 0)
+    for bow in (least + BOW * n for n in range(MOST_BOWS)):
+        middle = _Point((start.x + end.x) / 2 + along.y * bow, (start.y + end.y) / 2 - along.x * bow)
+        first, last = _rim(start, middle), _rim(end, middle)
+        points = tuple(_on(first, middle, last, n / PARTS) for n in range(1, PARTS))
+        if all(math.hypot(p.x - other.x, p.y - other.y) > RADIUS + 10 for p in points for other in others):
+            break
     path = f"M{first.x:.1f},{first.y:.1f} Q{middle.x:.1f},{middle.y:.1f} {last.x:.1f},{last.y:.1f}"
-    is_below = along.x < 0
-    at = _Point((start.x + 2 * middle.x + end.x) / 4, (start.y + 2 * middle.y + end.y) / 4 + (16 if is_below else -8))
-    return path, at
+    label = _box(edge, middle)
+    away = (abs(along.y) * label.width + abs(along.x) * label.height) / 2 + 3
+    beside = [
+        _box(edge, _Point(point.x + side * along.y * away, point.y - side * along.x * away))
+        for point in sorted(points, key=lambda each: abs(points.index(each) - PARTS // 2 + 1))
+        for side in (1, -1)
+    ]
+    return _Way(path, points, tuple(beside))
+
+
+def _on(first: _Point, middle: _Point, last: _Point, part: float) -> _Point:
+    """The point on a quadratic curve that comes after `part` of it."""
+    a, b, c = (1 - part) ** 2, 2 * part * (1 - part), part**2
+    return _Point(a * first.x + b * middle.x + c * last.x, a * first.y + b * middle.y + c * last.y)
 
 
 def _rim(place: _Point, towards: _Point) -> _Point:

@@ -1,4 +1,4 @@
-"""Zones that a property speaks of, and the path of a point among them, as a picture of the plane."""
+"""The zones in a property, and the path of a point among them, as a picture of the plane."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ FARTHEST = 1e100
 """What is not nearer than that to 0, or is not a number, is not drawn."""
 
 LISTED = 6
-"""So many of these are said in words."""
+"""At most so many of these are described in words."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,7 +63,7 @@ class _Visit:
 
 
 def courses(specification: PropertySpecification) -> list[Course]:
-    """The points of which a property asks where they are; the elements of arrays, and values at openings, are none."""
+    """The points that a property locates in zones, without elements of arrays and values at openings."""
     found: dict[tuple[Expression, Expression], dict[str, Sequence[Point]]] = {}
     sides = (side for atom in specification.atoms for side in operands(atom.condition))
     for part in (part for side in sides for part in subexpressions(side)):

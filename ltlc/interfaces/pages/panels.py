@@ -91,7 +91,7 @@ class Panel:
 
 
 def panels(specification: PropertySpecification, source: Source) -> list[Panel]:
-    """The panels of a property in `source`, in the order in which it first speaks of them."""
+    """The panels of a property in `source`, in the order of the text."""
     found: dict[tuple[str, Expression], Panel] = {}
     for panel in _all(specification, source):
         known = found.setdefault((panel.title, panel.expression), panel)

@@ -78,11 +78,11 @@ class PageReport:
         self._explanations: Sequence[Explanation] = ()
 
     def explain(self, explanations: Sequence[Explanation]) -> None:
-        """Say of the properties what these say; before any run is added."""
+        """Explain the properties with these; to be called before any run is added."""
         self._explanations = explanations
 
     def collector(self) -> Collector:
-        """What has to be told of the blocks of the next recording."""
+        """What takes the blocks of the next recording."""
         return Collector(self._wanted, self._most)
 
     def add(self, report: RunReport, collected: Collector) -> None:
@@ -184,7 +184,7 @@ _WORST_FIRST = (
 
 
 def _wanted(drawn: Sequence[Sequence[Panel]], mapped: Sequence[Sequence[Course]]) -> dict[Expression, set[float]]:
-    """All that is drawn, with the levels at which something changes; zones are no levels."""
+    """All that is drawn, with the levels at which something changes, zones aside."""
     wanted: dict[Expression, set[float]] = {}
     for panel in (panel for of_one in drawn for panel in of_one):
         for expression in panel.drawn:

@@ -23,7 +23,7 @@ Times = NDArray[np.int64]
 Numbers = NDArray[np.float64]
 
 MOST_NAMES = 200
-"""So many different strings of one expression are told apart."""
+"""At most so many different strings of one expression are distinguished."""
 
 
 class Series:
@@ -166,6 +166,17 @@ class Collector:
             gaps[0] = math.nan if before is None else gaps[0]
             self._heard[name] = int(times[-1])
         return gaps
+
+
+def sampled(blocks: Iterable[Block], signals: Sequence[Signal]) -> Iterator[tuple[Block, dict[str, Samples]]]:
+    """Blocks with the samples of `signals` in them, also of those that are computed from what is recorded."""
+    compute: dict[Expression, _Computation] = {}
+    before: dict[str, _History] = {}
+    reach = max((_reach(Current(signal)) for signal in signals), default=0)
+    for block in blocks:
+        reader = _Reader(block, compute, before)
+        yield block, {signal.name: reader.of(Current(signal)) for signal in signals}
+        before |= reader.last(reach + 1)
 
 
 def _reach(expression: Expression) -> int:

@@ -22,6 +22,7 @@ from ltlc.base.render.json import documents, place, plain
 from ltlc.frontend.language.suppression import unsuppressed
 from ltlc.interfaces.pages.panels import Panel, panels
 from ltlc.interfaces.serve.judging import judge
+from ltlc.interfaces.serve.opening import open_file
 from ltlc.interfaces.serve.questions import Question, read_question
 from ltlc.runtime.documents import json_value
 from ltlc.runtime.reports import printable
@@ -37,7 +38,7 @@ OF_A_COMPARISON = Budget(4, 512)
 
 
 def _check(question: Question) -> dict[str, Any]:
-    """The findings about the text, what its properties say, and which signals they read."""
+    """The findings about the text, the meaning of its properties, and the signals they read."""
     specification, diagnostics = _analysed(question) if question.analyses else _read(question)
     if specification is None:
         return {"diagnostics": documents(diagnostics), "properties": None, "signals": [], "rate": None}
@@ -107,13 +108,14 @@ def _compare(question: Question) -> dict[str, Any]:
     return dict(found)
 
 
-def _answered(ask: Callable[[Question], dict[str, Any]], body: bytes, message_paths: Sequence[str]) -> bytes:
+def _answered(
+    ask: Callable[[Question], dict[str, Any]], body: bytes, message_paths: Sequence[str], folder: str = ""
+) -> bytes:
     """The answer to what `body` asks, as JSON. Raises Refused."""
-    return json.dumps(ask(read_question(body, message_paths)), allow_nan=False).encode()
+    return json.dumps(ask(read_question(body, message_paths, folder)), allow_nan=False).encode()
 
 
-ANSWERS = {
-    name: partial(_answered, ask)
-    for name, ask in {"check": _check, "judge": judge, "explain": _explain, "compare": _compare}.items()
-}
+_QUESTIONS = {"check": _check, "judge": judge, "explain": _explain, "compare": _compare, "open": open_file}
+
+ANSWERS = {name: partial(_answered, ask) for name, ask in _QUESTIONS.items()}
 """What can be asked, by the names that questions are posted to."""

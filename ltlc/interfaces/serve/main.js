@@ -13,13 +13,15 @@ import { showCard, showExplanation, showMachine, showMaps, showProperties, showR
 import { MOST_STEPS, Run, WAVES } from "./run.js";
 import { RunTable } from "./table.js";
 
+const RECORDING = /\.(mcap|db3|bag|parquet|(csv|jsonl|ndjson)(\.gz|\.zst)?)$/i;
+
 const run = new Run();
 const editor = new Editor($("text"), document.querySelector(".marks"), textEdited, cursorMoved);
 const table = new RunTable($("table"), run, { edited: (what) => runEdited(what, curves), reshaped: rowsEdited, chose, failed });
 const curves = new Curves($("curves"), run, { edited: (what) => runEdited(what, table), chose });
 const edits = new History(state, showState, showUndo);
 
-let start, findings = [], properties = [], judged = null, rate = null, chosen = 0, at = null, shape = "", isStale = true, isNew = true;
+let start, findings = [], properties = [], judged = null, rate = null, chosen = 0, at = null, shape = "", note = "", isStale = true, isNew = true;
 const labels = () => properties.map((property) => property.label);
 const question = (more = {}) => ({ text: editor.text, encoding: $("encoding").value, property: chosen, ...more });
 
@@ -134,6 +136,7 @@ function chose(number) {
 
 function load(steps) {
   run.load(steps, rate);
+  note = "";
   at = null;
   rowsEdited();
   $("run-title").scrollIntoView({ block: "nearest" });
@@ -160,6 +163,7 @@ function tell(answer) {
   judged = answer?.properties ?? null;
   $("remarks").replaceChildren();
   for (const { severity, message, help } of answer?.diagnostics ?? []) remark(severity, message, help);
+  if (note) remark("note", note);
   table.tell(judged?.map((property) => property.rows));
   curves.tell(judged);
   showMachine(answer?.picture ?? null, at);
@@ -259,6 +263,7 @@ function showState({ text, encoding, rows }) {
   editor.text = text;
   $("encoding").value = encoding;
   run.rows = rows;
+  note = "";
   isStale = true; // until the text is read
   reshaped();
   shape = "";
@@ -288,11 +293,40 @@ function openExample({ text, run: csv }) {
 function paste(csv) {
   try {
     run.paste(csv);
+    note = "";
     isNew = true;
     rowsEdited();
   } catch (error) {
     failed(error);
   }
+}
+
+// Take the run from a recording, which is sent to the server in base64, and kept nowhere.
+async function openFile(file) {
+  if (file.size > start.most) {
+    return failed(new Error(`${file.name} is larger than ${start.most / 1e6} MB: use ltlc run`));
+  }
+  $("state").textContent = `opening ${file.name}…`;
+  const content = await base64(file).catch(failed);
+  if (content === undefined) return;
+  const answer = await answered("open", question({ file: file.name, content }));
+  if (!answer) return;
+  $("state").textContent = summary(findings);
+  if (!answer.rows) return failed(new Error(answer.diagnostics.map(({ message, help }) => [message, help].filter(Boolean).join(": ")).join("; ")));
+  run.rows = answer.rows;
+  note = answer.remark;
+  isNew = true;
+  at = null;
+  rowsEdited();
+}
+
+function base64(file) {
+  return new Promise((resolve, reject) => {
+    const reader = new FileReader();
+    reader.addEventListener("load", () => resolve(reader.result.replace(/^.*,/, "")));
+    reader.addEventListener("error", () => reject(reader.error));
+    reader.readAsDataURL(file);
+  });
 }
 
 function even() {
@@ -359,7 +393,8 @@ function listen() {
     if (!file) return;
     event.preventDefault();
     if (/\.csv$/i.test(file.name)) file.text().then(paste);
-    else failed(new Error(`${file.name} is not a CSV file: write one of it, or use ltlc run`));
+    else if (RECORDING.test(file.name)) openFile(file);
+    else failed(new Error(`${file.name} is not a recording: drop a .mcap, .db3, .bag, .csv, .jsonl or .parquet`));
   });
   for (const [name, act] of [["explain", explain], ["compare", compare]]) {
     $(name).addEventListener("toggle", () => { if ($(name).open) act(); });

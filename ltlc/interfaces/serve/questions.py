@@ -37,18 +37,22 @@ class Refused(Exception):  # noqa: N818  an answer, too
 
 @dataclass(frozen=True)
 class Question:
-    """The text of a specification, an encoding, and what else was `asked`; reading any of it may raise Refused."""
+    """The text of a specification, an encoding, and what else was `asked`; reading any of it may raise Refused.
+
+    `folder` is where a file that is sent may be written to.
+    """
 
     asked: dict[str, Any]
     message_paths: Sequence[str]
+    folder: str = ""
 
     @property
     def encoding(self) -> Encoding:
-        """How scopes are read; `episode` if nothing is said."""
+        """How scopes are read; `episode` by default."""
         try:
             return encoding_of(self._get("encoding", str, "episode"))
         except UnusableInput as error:
-            raise _bad(str(error)) from None
+            raise bad(str(error)) from None
 
     @property
     def analyses(self) -> bool:
@@ -60,15 +64,25 @@ class Question:
         """The run: an object for each step, with `time` in s, and the signals that have a sample."""
         steps = self._get("steps", list, [])
         if len(steps) > MOST_STEPS:
-            raise _bad(f"a run has at most {MOST_STEPS} steps here: use `ltlc run` for longer ones")
+            raise bad(f"a run has at most {MOST_STEPS} steps here: use `ltlc run` for longer ones")
         if not all(isinstance(step, dict) for step in steps):
-            raise _bad("`steps` are objects")
+            raise bad("`steps` are objects")
         return steps
 
     @property
     def at(self) -> int:
-        """The step up to which the run is looked at closely; the last if nothing is said."""
+        """The step up to which the run is shown in detail; the last by default."""
         return self._get("at", int, MOST_STEPS)
+
+    @property
+    def file(self) -> str:
+        """The name of a file that is sent."""
+        return self._get("file", str, "")
+
+    @property
+    def content(self) -> str:
+        """Its bytes, in base64."""
+        return self._get("content", str, "")
 
     @property
     def source(self) -> Source:
@@ -85,7 +99,7 @@ class Question:
         """The specification, which must have no errors."""
         specification, _ = self.loaded
         if specification is None:
-            raise Refused(HTTPStatus.OK, "the specification has errors")
+            raise with_errors()
         return specification
 
     @property
@@ -98,7 +112,7 @@ class Question:
         """Which property is asked about, from 0."""
         number, count = self._get("property", int, 0), len(self.specification.properties)
         if not 0 <= number < count:
-            raise _bad(f"there is no property {number}: there are {count}")
+            raise bad(f"there is no property {number}: there are {count}")
         return number
 
     def _get(self, name: str, wanted: type[Wanted], otherwise: Wanted) -> Wanted:
@@ -106,23 +120,29 @@ class Question:
         if value is None:
             return otherwise
         if type(value) is not wanted:
-            raise _bad(f"`{name}` is not {_KINDS[wanted]}")
+            raise bad(f"`{name}` is not {_KINDS[wanted]}")
         return value
 
 
 _KINDS: dict[type[Any], str] = {str: "a string", bool: "true or false", int: "a whole number", list: "an array"}
 
 
-def read_question(body: bytes, message_paths: Sequence[str]) -> Question:
+def read_question(body: bytes, message_paths: Sequence[str], folder: str = "") -> Question:
     """The question that `body` is. Raises Refused."""
     try:
         asked = json.loads(body)
     except ValueError as error:
-        raise _bad(f"not JSON: {error}") from None
+        raise bad(f"not JSON: {error}") from None
     if not isinstance(asked, dict):
-        raise _bad("a question is an object")
-    return Question(asked, message_paths)
+        raise bad("a question is an object")
+    return Question(asked, message_paths, folder)
 
 
-def _bad(reason: str) -> Refused:
+def with_errors() -> Refused:
+    """The refusal where a specification without errors is needed."""
+    return Refused(HTTPStatus.OK, "the specification has errors")
+
+
+def bad(reason: str) -> Refused:
+    """The refusal of a request that makes no sense."""
     return Refused(HTTPStatus.BAD_REQUEST, reason)

@@ -1,7 +1,7 @@
 """The server of `ltlc serve`: the page and its files by GET, answers about specifications by POST, as JSON.
 
-Whoever opens the page trusts it with a text; other pages that are open in the same browser must not get at it. So a
-request is refused that names another host (a name that its owner has made point here) or comes from another origin.
+Users trust the page with a text that other pages in the same browser must not reach. So a request that names another
+host (a foreign name that resolves to this machine) or comes from another origin is refused.
 """
 
 from __future__ import annotations
@@ -13,13 +13,14 @@ import socket
 import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from functools import partial
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from importlib.resources import files
 from ipaddress import ip_address
 from socketserver import TCPServer
+from tempfile import TemporaryDirectory
 from typing import Any
 from urllib.parse import urlsplit
 
@@ -33,7 +34,10 @@ OF_AN_ANSWER = Budget(30, 1024)
 """What one answer may use; what it asks of others is bounded more tightly there."""
 
 MOST_BYTES = 2_000_000
-"""Of a request."""
+"""Of a request that sends no file."""
+
+MOST_OF_A_FILE = 64_000_000
+"""Bytes of a file that is dropped on the page."""
 
 MOST_AT_ONCE = 4
 """So many answers are worked on at a time; others wait."""
@@ -42,7 +46,7 @@ LONGEST_WAIT = 20.0
 """Seconds that a request waits for its turn."""
 
 PATIENCE = 0.1
-"""Seconds between two looks whether whoever asked is still there."""
+"""Seconds between two checks whether the client is still there."""
 
 HEADERS = {
     "Content-Security-Policy": "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; "
@@ -69,7 +73,7 @@ _ASSETS = {
 class Server(ThreadingHTTPServer):
     """Serves the page that begins with `start`, at `host` and `port`; 0 takes any that is free.
 
-    Anybody can reach a host that is not this machine's own: then the page is below a path that nobody can guess.
+    If other machines can reach the host, the page is below a path that nobody can guess.
     """
 
     daemon_threads = True
@@ -115,11 +119,11 @@ def _is_number(host: str) -> bool:
 
 
 _HAS_LEFT: int = getattr(select, "POLLRDHUP", 0)
-"""What Linux says of a connection that the other side has closed, whatever can still be read from it."""
+"""How Linux marks a connection that the other side has closed, even if there is something left to read."""
 
 
 class _GoneError(Exception):
-    """Whoever asked does not wait for the answer any more."""
+    """The client no longer waits for the answer."""
 
 
 class Handler(BaseHTTPRequestHandler):
@@ -140,7 +144,7 @@ class Handler(BaseHTTPRequestHandler):
         self._guarded(self._post)
 
     def log_message(self, format: str, *args: Any) -> None:
-        """Requests are nobody's business."""
+        """Requests are not logged."""
 
     def end_headers(self) -> None:
         """Every answer has the same headers of security."""
@@ -149,7 +153,7 @@ class Handler(BaseHTTPRequestHandler):
         super().end_headers()
 
     def _guarded(self, respond: Callable[[str], None]) -> None:
-        """Respond to requests of the page, refuse others, and bear that whoever asks may leave at any time."""
+        """Respond to requests of the page, refuse others; a client may leave at any time."""
         try:
             try:
                 respond(self._own_path())
@@ -164,7 +168,7 @@ class Handler(BaseHTTPRequestHandler):
             raise
 
     def _own_path(self) -> str:
-        """What is asked for, below the path of the page. Raises Refused, also for whoever may not ask."""
+        """What is requested, below the path of the page. Raises Refused, also for clients without access."""
         _refuse_foreign(self.server, self.headers.get_all("Host", []), self.headers.get_all("Origin", []))
         path = self.path.partition("?")[0]
         if not path.startswith(self.server.base):
@@ -174,7 +178,11 @@ class Handler(BaseHTTPRequestHandler):
     def _get(self, name: str) -> None:
         name = name or "index.html"
         if name == "start.json":
-            self._send(HTTPStatus.OK, "application/json", json.dumps(self.server.start.document()).encode())
+            self._send(
+                HTTPStatus.OK,
+                "application/json",
+                json.dumps(self.server.start.document() | {"most": MOST_OF_A_FILE}).encode(),
+            )
         elif name in _ASSETS:
             content = (files(_ASSETS[name]) / name).read_bytes()
             self._send(HTTPStatus.OK, f"{_TYPES[name.rpartition('.')[2]]}; charset=utf-8", content)
@@ -189,19 +197,22 @@ class Handler(BaseHTTPRequestHandler):
             raise Refused(HTTPStatus.NOT_FOUND, "there is nothing here")
         if self.headers.get_content_type() != "application/json":
             raise Refused(HTTPStatus.UNSUPPORTED_MEDIA_TYPE, "a question is application/json")
-        job = partial(ANSWERS[name], self._body(), self.server.start.message_paths)
-        self._send(HTTPStatus.OK, "application/json", self._answer(job))
+        with TemporaryDirectory(prefix="ltlc-") if name == "open" else nullcontext("") as folder:
+            most = MOST_OF_A_FILE * 4 // 3 + MOST_BYTES if name == "open" else MOST_BYTES  # it is sent in base64
+            job = partial(ANSWERS[name], self._body(most), self.server.start.message_paths, folder)
+            found = self._answer(job)
+        self._send(HTTPStatus.OK, "application/json", found)
 
-    def _body(self) -> bytes:
+    def _body(self, most: int) -> bytes:
         written = self.headers.get("Content-Length", "")
         if not (written.isascii() and written.isdigit()):
             raise Refused(HTTPStatus.LENGTH_REQUIRED, "a question needs a Content-Length")
-        if len(written) > 9 or int(written) > MOST_BYTES:
-            raise Refused(HTTPStatus.REQUEST_ENTITY_TOO_LARGE, f"a question has at most {MOST_BYTES} bytes")
+        if len(written) > 9 or int(written) > most:
+            raise Refused(HTTPStatus.REQUEST_ENTITY_TOO_LARGE, f"a question has at most {most} bytes")
         return self.rfile.read(int(written))
 
     def _answer(self, job: Callable[[], bytes]) -> bytes:
-        """What `job` gives in a child, which is ended if nobody waits for it."""
+        """What `job` returns in a child, which is ended if the client leaves."""
         with self._turn():
             [outcome] = run_all([job], OF_AN_ANSWER, watch=self._stop_if_gone)
         return json.dumps({"limit": f"this {outcome}"}).encode() if isinstance(outcome, Exceeded) else outcome
@@ -220,7 +231,7 @@ class Handler(BaseHTTPRequestHandler):
             self.server.turns.release()
 
     def _stop_if_gone(self, *_: int) -> None:
-        """Raise an exception if whoever asked has closed the connection, be it with more said before."""
+        """Raise an exception if the client has closed the connection, even if it sent more before."""
         poll = select.poll()
         poll.register(self.connection, select.POLLIN | _HAS_LEFT)
         seen = poll.poll(0)
@@ -244,7 +255,7 @@ def _refuse_foreign(server: Server, hosts: list[str], origins: list[str]) -> Non
 
 
 def _name(host: str) -> str:
-    """The name in a `Host` header, in small letters; empty if there is none."""
+    """The name in a `Host` header, in lower case; empty if there is none."""
     try:
         return urlsplit(f"//{host}").hostname or ""
     except ValueError:

@@ -61,7 +61,7 @@ class Bundle:
         self.add(place, self._of_place[place.name])
 
     def add(self, place: Location, text: str) -> None:
-        """Append the evidence of the recording at `place`, the next one; empty if there is none."""
+        """Append the evidence of the recording at `place`, the next one; empty without evidence."""
         if not text:
             self.lacking.append(place.name)
             return
@@ -91,7 +91,7 @@ class Bundle:
 
 @contextmanager
 def _writing() -> Iterator[None]:
-    """Raises BundleError for what the system says."""
+    """Raises BundleError for errors of the system."""
     try:
         yield
     except OSError as error:

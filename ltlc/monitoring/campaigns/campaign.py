@@ -23,7 +23,7 @@ TRIES = 3
 
 @dataclass(frozen=True, slots=True)
 class Failure:
-    """A recording was not judged to its end, for this `reason`; `told` is what to say of it if it stays so."""
+    """A recording was not judged to its end, for this `reason`; `told` is the report if retries fail, too."""
 
     reason: str
     told: Diagnostic | None = None

@@ -93,7 +93,7 @@ def _version() -> str:
 
 
 def _judged(client: Any, judge: Judge, places: Sequence[Location]) -> Iterator[tuple[int, Outcome | Failure]]:
-    """What comes of the recordings, as it comes; what is under way when nobody asks for more is cancelled.
+    """The outcomes of the recordings, as they come; work in progress is cancelled if the consumer stops.
 
     So many are under way that no worker waits; what takes all workers down does not take the others with it.
     """

@@ -40,7 +40,7 @@ class Outcome:
     """What the recording at `place` has shown.
 
     `report` is its JSON document, in which `properties` is null if nothing could be judged, and otherwise empty.
-    `remarks` are lines about the whole recording; `diagnostics` are to be told, and are not kept in tables, nor is the
+    `remarks` are lines about the whole recording; `diagnostics` are reported, and are not kept in tables, nor is the
     `evidence`, which is empty if there is none.
     It took `seconds`, and as many `tries`.
     """
@@ -82,7 +82,7 @@ class Outcome:
 
 
 def of_report(place: Location, found: RunReport, seconds: float) -> Outcome:
-    """What `found` says of the recording at `place`, of which it may have read a copy."""
+    """The outcome of `found`, the report on the recording at `place` or a copy of it."""
     document = found.document()
     document["recording"] = place.name
     for told in document["diagnostics"]:
@@ -114,7 +114,7 @@ def _renamed(told: Diagnostic, name: str, to: str) -> Diagnostic:
 
 
 def not_judged(place: Location, told: Diagnostic) -> Outcome:
-    """That of a recording of which there is nothing but the error `told`."""
+    """The outcome of a recording with nothing but the error `told`."""
     return of_report(place, RunReport(place.name, None, (told,)), 0.0)
 
 

@@ -29,7 +29,7 @@ class Location:
 
 @dataclass(slots=True)
 class Found:
-    """What was found: places, files that are no recordings and were left alone, names of what was given twice."""
+    """What was found: places, files that were skipped as they are not recordings, names of what was given twice."""
 
     places: list[Location] = field(default_factory=list)
     left_alone: int = 0
@@ -123,7 +123,7 @@ def _is_folder_of_others(path: Path) -> bool:
 
 
 def _below(folder: Path, found: Found) -> Iterator[Location]:
-    """The recordings in `folder` and the folders in it, links included; what is hidden is passed over."""
+    """The recordings in `folder` and its folders, links included, without hidden ones."""
     seen: set[str] = set()
     for name, folders, files in os.walk(folder, onerror=lambda error: _unreadable(error, found), followlinks=True):
         here = Path(name)

@@ -120,7 +120,7 @@ class Results:
         return both.take(pyarrow.array(standing, "int64"))
 
     def _stands(self, row: Row, place: Location | None) -> bool:
-        """Whether what a row says of the recording at `place` is still so."""
+        """Whether a row about the recording at `place` is still valid."""
         if place is None or not place.version or row["error_code"] is not None:
             return False
         was = (row["size"], row["version"], row["judged_with"])
@@ -150,7 +150,7 @@ class Results:
 
     @contextmanager
     def _writing(self) -> Iterator[None]:
-        """Raises ResultsError for what the system says, and if another campaign has the journal."""
+        """Raises ResultsError for errors of the system, and if another campaign has the journal."""
         try:
             yield
         except InUseError:
@@ -203,7 +203,7 @@ def _is_of_this_version(table: Table) -> bool:
 
 
 def _outcomes(path: Path, table: Table) -> Iterator[Outcome]:
-    """What the rows of a table say. Raises ResultsError."""
+    """The outcomes in the rows of a table. Raises ResultsError."""
     rows = chain.from_iterable(batch.to_pylist() for batch in table.to_batches(max_chunksize=1000))
     for recording, of_one in groupby(rows, key=lambda row: str(row["recording"])):
         try:
@@ -225,7 +225,7 @@ def digest(parts: Iterable[str]) -> str:
 
 
 def _storable(cell: Any) -> Any:
-    """`cell`, a name of a file that is no text written with escapes."""
+    """`cell`, where a file name that is not text is written with escapes."""
     return cell.encode(errors="backslashreplace").decode() if isinstance(cell, str) else cell
 
 

@@ -55,7 +55,7 @@ def listed(address: str) -> tuple[list[Location], int]:
 
 @contextmanager
 def fetched(name: str) -> Iterator[Path]:
-    """Where on this machine the recording `name` can be read: itself, or a copy that is gone afterwards.
+    """Where on this machine the recording `name` can be read: itself, or a copy that is removed afterwards.
 
     Raises StorageError.
     """
@@ -90,7 +90,7 @@ def _opened(address: str) -> tuple[Any, str]:
 
 
 def _names_a_file(path: str) -> bool:
-    """Whether the end of the name says that it is a recording in one file."""
+    """Whether the name ends like that of a recording in one file."""
     return is_recording(Path(PurePosixPath(path).name))
 
 
@@ -112,7 +112,7 @@ def _bag(system: Any, folder: str, files: dict[str, dict[str, Any]]) -> Location
 
 
 def _version(parts: list[tuple[str, dict[str, Any]]]) -> str:
-    """What changes with the files, as the storage tells of their content or age; empty if it tells nothing of one."""
+    """What changes with the files, by the storage's data on their content or age; empty if it has none for one."""
     told = [(name, state.get("size"), sorted(map(str, _changes(state)))) for name, state in parts]
     return sha256(repr(told).encode()).hexdigest()[:32] if all(changes for *_, changes in told) else ""
 

@@ -61,7 +61,7 @@ class PropertyTally:
 
     @property
     def is_idle(self) -> bool:
-        """Whether no recording says anything of it: it never started, or never was triggered."""
+        """Whether no recording tests it: it never started, or was never triggered."""
         return not any(n for kind, n in self.counts.items() if kind not in (Result.NOT_STARTED, Result.NEVER_TRIGGERED))
 
 

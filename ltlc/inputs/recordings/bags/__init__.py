@@ -92,7 +92,7 @@ class BagRecording:
 
     @property
     def types(self) -> list[tuple[str, MessageTypes]]:
-        """What is read is messages of these types, each with the definitions of all that is in it."""
+        """The types of the messages that are read, each with the definitions of all types in it."""
         return [(reader.message, reader.defined.types) for reader in self._plan.readers.values()]
 
     @property

@@ -1,4 +1,4 @@
-"""Fields of many CDR messages at once: each becomes a column, and what nobody reads is stepped over.
+"""Fields of many CDR messages at once: each becomes a column, and unread fields are skipped.
 
 All messages of a topic are walked through side by side, by their definition, to their ends: one that ends elsewhere is
 not what is defined. Where they are in step, a position is one number for all; behind a string or a sequence it is one
@@ -28,7 +28,7 @@ from ltlc.specification.expressions import Bytes, Parallel
 _BOOLEANS = {"bool", "boolean"}
 _LONGS = {"i8", "u8"}
 HEADER = 4
-"""The bytes before a message that say how it is encoded; positions count from behind them."""
+"""The bytes before a message that give its encoding; positions count from after them."""
 
 
 PADDING = 4
@@ -145,7 +145,7 @@ class _Walk:
         return found
 
     def _indexes(self, cursor: _Cursor, message: str, wanted: Tree) -> dict[Parallel, Places]:
-        """Where each name stands that an element of a list beside it is found by; -1 where there is none."""
+        """In each message, the index of the name by which an element of a parallel list is selected; -1 without it."""
         steps = {step for part in wanted.values() for step in part if isinstance(step, Parallel)}
         found = {}
         for step in steps:

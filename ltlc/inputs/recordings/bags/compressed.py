@@ -52,7 +52,7 @@ def _sizes(messages: Messages) -> Places:
 
 
 def _claimed(raw: bytes | memoryview) -> int:
-    """How large a message claims to be when it is decompressed: more than any if it does not say so, or is damaged."""
+    """The size that a compressed message claims to have; beyond any limit if it claims none, or is damaged."""
     import zstandard
 
     if not is_packed(raw):

@@ -83,7 +83,7 @@ class Copier:
                 self._files.append(_File(bag, bag.span, *self._numbered(bag.contents())))
 
     def _defined(self, contents: Contents, distribution: str) -> Contents:
-        """The same, with definitions of those types that have none but are known."""
+        """The same, with definitions added for known types without one."""
         if all(schema.form for schema in contents.schemas.values()):
             return contents
         types = merged(other_layers(self._message_paths, distribution)).messages

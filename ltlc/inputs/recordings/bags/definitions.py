@@ -1,4 +1,4 @@
-"""What the messages of a bag look like: who defines them, and whether a field is as the specification has it."""
+"""The definitions of a bag's messages: where they come from, and whether fields fit the specification."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class NonsenseError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Layer:
-    """What somebody, such as `ROS 2 Humble`, defines."""
+    """The types defined by a source, such as `ROS 2 Humble`."""
 
     origin: str
     messages: Mapping[str, Message]
@@ -168,7 +168,7 @@ _TYPES = {"string": ValueType.STRING, "bool": ValueType.BOOLEAN, "boolean": Valu
 
 
 def _value_reason(signal: Signal, field: Field, type_: FieldType) -> str:
-    """Why what is at the end of the path is no value of the signal; of an array, any length will do."""
+    """Why the field at the end of the path is not a value of the signal; arrays may have any length."""
     of_one = _TYPES.get(type_.base, ValueType.NUMBER)
     wanted = signal.type.element or signal.type
     is_known = type_.base in _READABLE

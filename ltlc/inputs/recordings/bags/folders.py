@@ -1,4 +1,4 @@
-"""Bags as files: which there are, what `metadata.yaml` says of them, and those that are compressed as a whole."""
+"""The files of a bag: which there are, what `metadata.yaml` says about them, and those compressed as a whole."""
 
 from __future__ import annotations
 

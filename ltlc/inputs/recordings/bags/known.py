@@ -86,7 +86,7 @@ def _recorded(paths: Iterable[Path], named: Callable[[], Sequence[str]], types: 
     """What the bags among `paths` define, of which the earlier win.
 
     The first is always looked at, the others until all types that are `named` are known, beside those in `types`. What
-    cannot be read is told when it is judged.
+    cannot be read is reported when it is judged.
     """
     found: dict[str, Message] = {}
     names: Sequence[str] = ()

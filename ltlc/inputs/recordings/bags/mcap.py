@@ -40,7 +40,7 @@ MOST_AHEAD = 1 << 25
 
 
 class McapStorage:
-    """An MCAP file. Raises RecordingError if it is none."""
+    """An MCAP file. Raises RecordingError if it is not one."""
 
     distribution = ""
 
@@ -86,7 +86,7 @@ class McapStorage:
                 _, _, time, _ = MESSAGE_HEAD.unpack_from(body)
                 first, last = min(first, time), max(last, time)
         except (DamageError, struct.error):
-            pass  # it is told when it is come to
+            pass  # it is reported when it is reached
         contents.span = span_of(first, last)
         return contents
 
@@ -129,7 +129,7 @@ class McapStorage:
     def _indexed(
         self, wanted: dict[int, str], chunks: list[ChunkIndex], since: Nanoseconds, until: Nanoseconds
     ) -> Iterator[Batch]:
-        """The messages of those chunks that the index says have some; what they lie in is used again for later ones."""
+        """The messages of the chunks that have some by the index; their buffers are reused for later ones."""
         groups = list(_groups([each for each in chunks if _is_of_use(each, wanted, since, until)]))
         rooms: list[Room] = []
         pieces = ((group, rooms.pop() if rooms else Room(ENOUGH)) for group in groups)

@@ -32,7 +32,7 @@ assert _HEAD.itemsize == HEAD.size + MESSAGE_HEAD.size
 class Chunks:
     """The wanted messages of several chunks: few large batches are read faster than many small ones.
 
-    If one is damaged, `damage` says so, and they are those before it.
+    If one is damaged, `damage` says how, and only those before it are there.
     """
 
     def __init__(self, wanted: Mapping[int, str], room: Room) -> None:

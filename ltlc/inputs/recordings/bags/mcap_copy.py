@@ -75,7 +75,7 @@ class McapParts:
 
 
 def _profile(file: BufferedReader) -> str:
-    """How the file says it is to be read: `ros2`."""
+    """The profile of the file: `ros2`."""
     head = file.read(len(MAGIC) + HEAD.size + 4)
     opcode, _ = HEAD.unpack_from(head, len(MAGIC))
     return file.read(int.from_bytes(head[-4:], "little")).decode() if opcode == FILE_HEADER else ""

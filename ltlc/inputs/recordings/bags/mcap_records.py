@@ -27,7 +27,7 @@ _CUT_OFF = "it is cut off, as if the recorder was killed"
 
 
 class Channel(NamedTuple):
-    """The messages of one recorder on a topic: their schema and serialization, and what else a record says of them."""
+    """The messages of one recorder on a topic: their schema and serialization, and the record's other fields."""
 
     schema: int
     topic: str

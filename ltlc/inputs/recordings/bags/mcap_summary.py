@@ -18,7 +18,7 @@ _BY_CHANNEL = struct.Struct("<HQ")
 
 
 def summary(file: BufferedReader) -> Contents | None:
-    """What the end of a file says, if it has an end, and that says enough to go by. Raises OSError."""
+    """What the end of a file says, if it has one that is complete enough. Raises OSError."""
     try:
         return _contents(*_section(file))
     except (struct.error, UnicodeDecodeError):
@@ -26,7 +26,7 @@ def summary(file: BufferedReader) -> Contents | None:
 
 
 def _section(file: BufferedReader) -> tuple[int, bytes]:
-    """Where the summary begins, and its bytes: none if there is none. Raises struct.error."""
+    """Where the summary begins, and its bytes, empty without one. Raises struct.error."""
     size = HEAD.size + _FOOTER.size + len(MAGIC)
     end = file.seek(0, SEEK_END) - size
     file.seek(max(0, end))
@@ -44,7 +44,7 @@ def _section(file: BufferedReader) -> tuple[int, bytes]:
 
 
 def _contents(start: int, section: bytes) -> Contents | None:
-    """What is said in the summary, behind the chunks. Raises struct.error and UnicodeDecodeError."""
+    """The contents of the summary, after the chunks. Raises struct.error and UnicodeDecodeError."""
     contents, statistics, place = Contents(), None, 0
     chunks: list[ChunkIndex] = []
     while place < len(section):

@@ -97,7 +97,7 @@ class Batch:
 
 
 def span_of(first: Nanoseconds, last: Nanoseconds) -> tuple[Nanoseconds, Nanoseconds] | None:
-    """The times of the first and the last message; None if these are none that a clock shows."""
+    """The times of the first and the last message; None if a clock cannot show these."""
     return (first, last) if 0 <= first <= last < NEVER else None
 
 
@@ -111,7 +111,7 @@ class Storage(Protocol):
 
     @property
     def distribution(self) -> str:
-        """The distribution of ROS 2 that it was recorded with, as in `humble`; empty if it does not say so."""
+        """The distribution of ROS 2 that recorded it, such as `humble`; empty if unknown."""
         ...
 
     @property

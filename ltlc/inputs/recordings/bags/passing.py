@@ -1,4 +1,4 @@
-"""Stepping over elements of CDR messages that nobody reads, in one message after the other.
+"""Skipping unread elements of CDR messages, one message after the other.
 
 It is for few messages with many elements: of many messages, `cdr` takes each element in all of them at once.
 """

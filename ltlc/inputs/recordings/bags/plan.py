@@ -82,7 +82,7 @@ class TopicReader:
         return rows if len(stamped) == len(times) else rows.taken(stamped)
 
     def readable(self, messages: Messages) -> int:
-        """How many of the first messages are what their definition says."""
+        """How many messages, from the first on, fit their definition."""
         least, most = 0, len(messages)
         while least < most:
             middle = (least + most + 1) // 2
@@ -94,7 +94,7 @@ class TopicReader:
         return least
 
     def misfit(self, messages: Messages) -> str:
-        """What the first of `messages` is, which is not what its definition says: as in `is 4 bytes shorter than`."""
+        """How the first of `messages` differs from its definition: as in `is 4 bytes shorter than`."""
         try:
             self._columns(messages.first(1))
         except MisfitError as error:
@@ -118,7 +118,7 @@ def _scalar_at(types: MessageTypes, message: str, path: tuple[str, ...]) -> str 
 
 
 def _as_kept(signal: Signal, samples: Samples | None) -> Samples:
-    """Samples in the form that all recordings have; None are none at all."""
+    """Samples in the form of all recordings; None becomes empty ones."""
     element = signal.type.element
     kind = kind_of(Column(element or signal.type, signal.numbers))
     none: Places = np.array([], np.int64)

@@ -29,14 +29,14 @@ ENOUGH_BYTES = 1 << 22
 """Or so many bytes."""
 
 _MISFITS = (SerdeError, struct.error, AssertionError, ValueError, IndexError)
-"""What rosbags raises of a message that is longer or shorter than its definition says."""
+"""What rosbags raises for a message that is longer or shorter than its definition says."""
 
 _FAULTS = (ReaderError, AssertionError, struct.error, ValueError, KeyError, IndexError, EOFError, RuntimeError)
 """What rosbags raises of a bag that is damaged, and what the decompressors do."""
 
 
 class Ros1Storage:
-    """A `.bag` file. Raises RecordingError if it is none."""
+    """A `.bag` file. Raises RecordingError if it is not one."""
 
     distribution = ""
 
@@ -152,7 +152,7 @@ def _topic(connections: list[Connection], count: int) -> Topic:
 
 
 Converter = Callable[[bytes | memoryview], bytes]
-"""Makes a message of ROS 1 one of ROS 2; nothing, which is no message, of one that is not what its definition says."""
+"""Converts a message of ROS 1 to ROS 2; to no bytes, which is no message, if it does not fit its definition."""
 
 
 def converter(type_: str, definition: str) -> Converter:

@@ -1,4 +1,4 @@
-"""Numbers in CDR messages, and messages that are not what their definition says."""
+"""Numbers in CDR messages, and messages that do not fit their definition."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ SCALARS = {
 
 
 class MisfitError(Exception):
-    """The messages are not what their definition says; `reason` is what a message is, as in `is too short for`."""
+    """Messages do not fit their definition; `reason` says how, as in `is too short for`."""
 
     def __init__(self, reason: str = "is not") -> None:
         super().__init__(reason)

@@ -36,7 +36,7 @@ _FAULTS = (sqlite3.Error, OSError, OverflowError, UnicodeDecodeError)
 
 
 class SqliteStorage:
-    """A database of topics and messages. Raises RecordingError if it is none."""
+    """A database of topics and messages. Raises RecordingError if it is not one."""
 
     def __init__(self, path: Path) -> None:
         self._path = path
@@ -65,7 +65,7 @@ class SqliteStorage:
         return database
 
     def _refuse_views(self, database: sqlite3.Connection) -> None:
-        """Raise sqlite3.DataError if something is no table, which could make rows forever."""
+        """Raise sqlite3.DataError if something is not a table: a view could make rows forever."""
         kinds = database.execute("select distinct type from sqlite_master where name in ('topics', 'messages')")
         if [kind for (kind,) in kinds if kind != "table"]:
             raise sqlite3.DataError("its topics or messages are not a table")
@@ -167,7 +167,7 @@ def _of_types(found: sqlite3.Cursor, *types: type) -> list[Any]:
 def _span(database: sqlite3.Connection) -> tuple[Nanoseconds, Nanoseconds] | None:
     """The times of the first and the last message; each by itself, for then the index is used.
 
-    Where the database is damaged, the messages will tell.
+    Damage of the database shows when messages are read.
     """
     try:
         (first,) = database.execute("select min(timestamp) from messages").fetchone()
