@@ -137,6 +137,11 @@ KEPT = 'after_until mode == "a", mode == "b", always v <= @{v, opening}'
 RECENT = "never all(@{v, -2:} > 1)"
 AGED = "always age(scan) <= 1 s"
 PAST = "always (new mode implies historically v > 2 for 1 s)"
+RATED = [
+    f"_rate_ = 30\n{SIGNALS}{TIMED}\n{AGED}\n{PAST}\nalways 1 < 2\n{RECENT}",
+    f"_rate_ = 2\n_timeout_ = 5 s\n{SIGNALS}{OPENED}\n{PAST}",
+]
+"""Ticks that begin with several sets of topics and with the session, every third of which is a nanosecond later."""
 FAULTS = [
     (TIMED, "time + 2000000000", "time + 2000000001"),
     (TIMED, "past(self.signals.v_latest, 1, 2)", "past(self.signals.v_latest, 0, 2)"),
@@ -163,6 +168,36 @@ def test_the_replay_finds_a_fault_in_the_text(property_: str, right: str, wrong:
     found = rust_programs(replace(file, text=file.text.replace(right, wrong)), compiled, whole)
     assert found is not None
     assert isinstance(judged(compiled[0], found[0]), Deviation)
+
+
+@needs_rustc
+@pytest.mark.parametrize("text", RATED)
+def test_the_replay_finds_nothing_in_what_looks_at_samples_with_ticks(text: str) -> None:
+    compiled, whole = from_text(text)
+    for of, program in zip(compiled, rust_programs(file_of(compiled, whole), compiled, whole) or (), strict=True):
+        assert isinstance(judged(of, program), Replayed), of.specification.text
+
+
+@needs_rustc
+@pytest.mark.parametrize(
+    ("property_", "right", "wrong"),
+    [
+        (TIMED, "self.fraction += 1;", "self.fraction += 2;"),
+        (TIMED, "self.latest.v = samples.v;", ""),
+        (TIMED, "&{ self.latest }", "&Samples { v: None, scan: None }"),
+        (AGED, "self.signals.ticks.next = time;", "self.signals.ticks.next = time + 1;"),
+        (PAST, "self.signals.new_mode = self.signals.new_mode || ", "self.signals.new_mode = "),
+        (PAST, "self.signals.new_mode = false;", ""),
+        (RECENT, "while next < time {", "while false {"),
+        (RECENT, "if self.next_tick() < next {", "if false {"),
+    ],
+)
+def test_the_replay_finds_a_fault_in_ticks(property_: str, right: str, wrong: str) -> None:
+    compiled, whole = from_text(f"_rate_ = 30\n{SIGNALS}{property_}")
+    file = file_of(compiled, whole)
+    assert right in file.text
+    (program,) = rust_programs(replace(file, text=file.text.replace(right, wrong)), compiled, whole) or ()
+    assert isinstance(judged(compiled[0], program), Deviation)
 
 
 @needs_rustc
@@ -198,7 +233,6 @@ def test_the_file_needs_no_standard_library_and_gives_no_warning(tmp_path: Path)
         ("never sqrt(v) > 2", "the square root, for which `core` has no function"),
         ("never mod(v, 3) > 2 and sin(v) > 0", "the sine, for which `core` has no function"),
         ("never abs(id) > 3", "a comparison with `-`, `abs`, `min` or `max` of 64-bit integers, which is exact"),
-        ("_rate_ = 10\nnever v > 2", "ticks of `_rate_`"),
     ],
 )
 def test_what_rust_cannot_say_is_refused_by_name(property_: str, lacks: str, tmp_path: Path, capsys: Any) -> None:

@@ -30,10 +30,18 @@ _SCALARS |= {"bool": "bool", "char *": "&str", "float": "f32", "double": "f64", 
 
 
 def written(
-    text: str, header: str, source: str, properties: Sequence[Property], timeout: Nanoseconds | None = None
+    text: str,
+    header: str,
+    source: str,
+    properties: Sequence[Property],
+    rate: float | None = None,
+    timeout: Nanoseconds | None = None,
 ) -> Sequence[WrittenInC | Difference]:
-    """What is written of each of `properties` in a file that has to say what a header and a source file say in C."""
-    parts = written_in_c(header, source, properties, None, timeout, is_grouped=False)
+    """What is written of each of `properties` in a file that has to say what a header and a source file say in C.
+
+    `rate`, in Hz, and `timeout` are those of their specification.
+    """
+    parts = written_in_c(header, source, properties, rate, timeout, is_grouped=False)
     read = next((part.definitions for part in parts if isinstance(part, WrittenInC)), None)
     try:
         if read is not None:
@@ -61,9 +69,10 @@ class _File:
         self.c, self.prefix = Plain(c), f"{c.prefix}_"
         self.structs = self.c.structs
         self.names = self._names(labels)
-        shared = {"samples": "Samples", "signals": "Signals", "monitors": "Monitors"}
+        self.kept = self.c.kept_by()
+        shared = [each for each in self.structs if each in ("samples", "ticks", "monitors", *self.kept)]
         self.properties = dict(zip((each for each in self.structs if each not in shared), self.names, strict=True))
-        self.types = {**self.properties, **shared}
+        self.types = {**self.properties, **{each: each[0].upper() + each[1:] for each in shared}}
 
     def _names(self, labels: Sequence[str]) -> list[str]:
         """What properties are called, each of which has to recall its label."""
@@ -100,7 +109,8 @@ class _File:
         verdicts = (Verdict.NOT_STARTED, *(each for each in Verdict if each is not Verdict.NOT_STARTED))
         derive = "#[derive(Clone, Copy, Debug"
         named = "".join(f"{each.name.title().replace('_', '')}," for each in verdicts)
-        fields = "".join(self._sampled(self.structs["samples"].decls))
+        sampled = self._sampled(self.structs["samples"].decls)
+        fields = "".join(f"pub {name}: {type_}," for name, type_, _ in sampled)
         yield from _tokens(f"""
             #![allow(dead_code, non_camel_case_types, non_snake_case, unused_variables)]
             pub const NEVER: i64 = {NEVER};
@@ -139,9 +149,9 @@ class _File:
         """What makes monitors ready, and what asks them; without clocks, nothing depends on the time."""
         cases = "".join(
             f"""Property::{type_} => Judgement {{ verdict: self.{name}.verdict, since: self.{name}.since,
-                steps: self.signals.together.wrapping_add(self.{name}.apart).wrapping_sub(self.{name}.invalid),
+                steps: self.{kept}.together.wrapping_add(self.{name}.apart).wrapping_sub(self.{name}.invalid),
                 invalid: self.{name}.invalid, }},"""
-            for name, type_ in self.properties.items()
+            for (name, type_), kept in zip(self.properties.items(), self.kept, strict=True)
         )
         yield from _tokens("pub const fn new() -> Self")
         yield _Body(("new", self.c.functions[f"{self.prefix}init"]))
@@ -191,17 +201,21 @@ class _File:
         return self._zero(type_)
 
     def _zero(self, type_: str) -> str:
+        if type_ == self.types["samples"]:
+            given = self._sampled(self.structs["samples"].decls)
+            members = (f"{name}: {'false' if is_told else 'None'}" for name, _, is_told in given)
+            return f"Samples {{ {', '.join(members)} }}"
         if type_ in self.types.values():
             return f"{type_}::NEW"
         simple = {"&str": '""', "bool": "false", "f32": "0.0", "f64": "0.0", "Verdict": "Verdict::NotStarted"}
         return "&[]" if type_.startswith("&[") else simple.get(type_, "0")
 
-    def _sampled(self, members: Sequence[Decl]) -> Iterator[str]:
-        """Each value that may come, and each message; a flag stands for that it comes."""
+    def _sampled(self, members: Sequence[Decl]) -> Iterator[tuple[str, str, bool]]:
+        """Each value that may come, and each message, with its type, and whether it is one; a flag says that it comes."""
         values = [each for each in members if each.bitsize is None and each.name != "nothing"]
         told = [each for each in members if each.bitsize is not None][len(values) :]
-        yield from (f"pub {each.name}: Option<{self._type(each)}>," for each in values)
-        yield from (f"pub {each.name}: bool," for each in told)
+        yield from ((each.name, f"Option<{self._type(each)}>", False) for each in values)
+        yield from ((each.name, "bool", True) for each in told)
 
 
 _WITHOUT = {

@@ -13,7 +13,7 @@ from ltlc.semantics.verdicts import Verdict
 _TOKEN = re.compile(
     r"\s+|//[^\n]*"
     r'|(?P<token>"(?:[^"\\]|\\u\{[0-9a-f]+\})*"|0x[0-9a-f_]+|\d[\d_]*(?:\.\d+)?(?:e[+-]?\d+)?(?:[iuf]\d+)?|\w+(?:::\w+)*!?'
-    r"|\.\.|&&|\|\||[<>=!+]=|->|=>|[-+*/%<>=!&|.,;:()\[\]{}#'$])"
+    r"|\.\.|&&|\|\||[-<>=!+]=|->|=>|[-+*/%<>=!&|.,;:()\[\]{}#'$])"
 )
 _LEVELS = (("||",), ("&&",), ("<", "<=", ">", ">=", "==", "!="), ("+", "-"), ("*", "/", "%"))
 _CASTS = {"f64": "double", "i64": "int64_t", "u64": "uint64_t"}
@@ -116,8 +116,8 @@ class Parser:
     def _simple(self) -> Tree:
         """An assignment, or an expression by itself; what a counter wraps around is added to it."""
         place = self._expression()
-        if self._has("+="):
-            return "+=", place, self._expression()
+        if self._next in ("+=", "-="):
+            return self._take(), place, self._expression()
         if not self._has("="):
             return "do", place
         match self._expression():
@@ -148,6 +148,10 @@ class Parser:
             return self._take(), self._unary()
         if self._has("&"):
             self._has("mut")
+            if self._has("{"):  # a copy
+                found = self._expression()
+                self._take("}")
+                return found
             return ("{}", *self._list("]")) if self._has("[") else self._unary()
         return self._postfix()
 

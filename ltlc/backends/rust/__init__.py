@@ -65,8 +65,6 @@ def emit(compiled: Sequence[Compiled], specification: Specification) -> str:
 def in_c(compiled: Sequence[Compiled], specification: Specification) -> c.Files:
     """The files of C from which Rust is printed. Raises NotInTargetError."""
     require_whole_runs(compiled)
-    if specification.rate is not None:
-        raise NotInTargetError("ticks of `_rate_`")
     for primitive in (p.primitive for each in compiled for whole in _calculated(each) for p in _applied(whole)):
         if primitive in MISSING:
             raise NotInTargetError(f"the {primitive.value}, for which `core` has no function")
@@ -87,7 +85,8 @@ def _applied(whole: Expression) -> Iterator[Apply]:
 def file_of(compiled: Sequence[Compiled], specification: Specification) -> File:
     """The file for `compiled`, with the files of C. Raises NotInTargetError."""
     files = in_c(compiled, specification)
-    trees, unique = Trees(files), type_names()
+    trees = Trees(files)
+    unique = type_names(trees.structs.keys() - {p.name for p in files.properties})
     labels = {p.name: unique.unique(class_name(p.specification.label)) for p in files.properties}
     types = Types(trees, labels)
     given = files.samples
@@ -102,14 +101,16 @@ def file_of(compiled: Sequence[Compiled], specification: Specification) -> File:
         about=_about(compiled, specification),
         never=NEVER,
         verdicts=[(verdict_name(verdict), meaning) for verdict, meaning in MEANINGS.items()],
-        properties=[(prose(p.specification.label), labels[p.name], spelled(p.name)) for p in files.properties],
+        properties=[
+            (prose(p.specification.label), labels[p.name], spelled(p.name), p.signals.name) for p in files.properties
+        ],
         samples=list(_samples(files, types, fields)),
         functions=[*texts(code), *("\n".join(functions[name]) + "\n" for name in functions if of[name] is None)],
         structs=[
             {
                 "name": types.struct(name),
                 "lifetime": types.lifetime(name),
-                "about": _described(name, files),
+                "about": _described(name, trees),
                 "members": [(spelled(m.name), types.text(m), types.first(m)) for m in struct.decls],
                 "methods": [functions[each] for each in functions if of[each] == name],
             }
@@ -130,13 +131,10 @@ def _printed(trees: Trees) -> Iterator[str]:
     return (name for name in trees.functions if trees.short(name) not in apart)
 
 
-def _described(name: str, files: c.Files) -> list[str]:
-    of = {p.name: f"Line {p.specification.line}: {p.specification.text}" for p in files.properties}
-    of |= {
-        "signals": "What is kept of samples, and which messages are news.",
-        "monitors": "The monitors of all properties.",
-    }
-    return comment("///", of[name])
+def _described(name: str, trees: Trees) -> list[str]:
+    of = {p.name: [f"Line {p.specification.line}: {p.specification.text}"] for p in trees.files.properties}
+    of["monitors"] = ["The monitors of all properties."]
+    return comment("///", *(of.get(name) or trees.about_struct(name)))
 
 
 def _samples(files: c.Files, types: Types, fields: dict[str, str]) -> Iterator[str]:

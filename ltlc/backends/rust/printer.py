@@ -166,6 +166,9 @@ class _Body:
             case c_ast.Assignment(op="+=", lvalue=c_ast.StructRef(field=c_ast.ID(name="together")) as place):
                 more = Call("wrapping_add", (self.value(node.rvalue),))
                 yield f"{self.place(place)} = {self.place(place)}.{flat(more)}"
+            case c_ast.Assignment(lvalue=c_ast.StructRef(name=c_ast.StructRef(field=c_ast.ID(name="latest"))) as place):
+                if place.field.name in self.printer.trees.files.samples.fields.values():
+                    yield f"{self.place(place)} = {self.place(node.rvalue)}"  # a flag stands for that it comes
             case c_ast.Assignment(op=operator, lvalue=place, rvalue=value):
                 yield Do(f"{self.place(place)} {operator} ", self.value(value))
             case c_ast.UnaryOp(op="p++", expr=c_ast.ID(name=name)):
@@ -235,6 +238,8 @@ class _Body:
                 return Text(self.place(node))
             case c_ast.UnaryOp(op="!", expr=c_ast.FuncCall(name=c_ast.ID(name="same_text"), args=args)):
                 return Chain(tuple(map(self.code, args.exprs)), ("!=",))
+            case c_ast.UnaryOp(op="&", expr=c_ast.StructRef(field=c_ast.ID(name="latest")) as place):
+                return Text(f"&{{ {self.place(place)} }}")  # a copy, for something else may change
             case c_ast.UnaryOp(op=operator, expr=inner):
                 return Prefix("not " if operator == "!" else operator, self.code(inner))
             case c_ast.Cast(expr=inner) if _is_constant(inner):

@@ -66,7 +66,13 @@ class Trees:
 
     def about(self, function: str) -> list[str]:
         """The paragraphs of the comment above a function, or above where it is declared for others."""
-        node = self._prototypes.get(function) or self.functions[function]
+        return self._above(self._prototypes.get(function) or self.functions[function])
+
+    def about_struct(self, name: str) -> list[str]:
+        """The paragraphs of the comment above a struct."""
+        return self._above(self.structs[name])
+
+    def _above(self, node: Node) -> list[str]:
         end = node.coord.line - 1
         while not self._lines[end - 1]:
             end -= 1

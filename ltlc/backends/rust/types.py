@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from pycparser.c_ast import ArrayDecl, Decl, IdentifierType, Node, PtrDecl, TypeDecl
 
 from ltlc.backends.c.types import type_name
+from ltlc.backends.rust.names import spelled, struct_name
 from ltlc.backends.rust.trees import Trees
 from ltlc.program.types import Scalar, Type
 
@@ -42,7 +43,7 @@ class Types:
 
     def struct(self, name: str) -> str:
         """The name of a struct."""
-        return self._names.get(name) or name[0].upper() + name[1:]
+        return self._names.get(name) or struct_name(name)
 
     def borrows(self, name: str) -> bool:
         """Whether values of a struct have parts that lie elsewhere."""
@@ -98,6 +99,8 @@ class Types:
                 return '""'
             case IdentifierType(names=[name]):
                 short = self._trees.short(name)
+                if short == "samples":
+                    return self.nothing()
                 if short in self._trees.structs:
                     return f"{self.struct(short)}::NEW"
                 scalar = SCALARS.get(name)
@@ -105,3 +108,10 @@ class Types:
                 return simple.get(scalar, "0")
             case _:
                 raise TypeError(node)
+
+    def nothing(self) -> str:
+        """Samples of which nothing has come."""
+        given = self._trees.files.samples
+        flags = (heard.name for heard in given.heard.values() if heard.has_flag)
+        members = [*(f"{spelled(n)}: None" for n in given.fields.values()), *(f"{spelled(n)}: false" for n in flags)]
+        return f"Samples {{ {', '.join(members)} }}"

@@ -168,7 +168,8 @@ class _Rust:
             file = rust.file_of(compiled, specification)
         except NotInTargetError:
             raise UnfitError(_unfit("Rust", rust.emit, specification, compiled)) from None
-        read = written_in_rust(file.text, file.c.header, file.c.source, compiled, specification.timeout)
+        own = (specification.rate, specification.timeout)
+        read = written_in_rust(file.text, file.c.header, file.c.source, compiled, *own)
         return Made(rust_programs(file, compiled, specification), read, lambda: {self.path: file.text})
 
 

@@ -54,6 +54,12 @@ class Plain:
             return "unwrap_or_default", name
         return ("is_some", flags[name]) if name in flags else (".", "samples", name)
 
+    def kept_by(self) -> list[str]:
+        """For each property the member of monitors that keeps its samples, as what counts its steps says."""
+        (switch,) = statements(self.functions[f"{self._prefix}steps_of"])
+        *cases, _ = switch.stmt.block_items
+        return [case.stmts[0].expr.left.left.name.field.name for case in cases]
+
     def body(self, function: FuncDef) -> tuple[Tree, ...]:
         """What a function does; what makes monitors ready begins with those of which all is 0."""
         given, items = parameters(function), statements(function)
@@ -90,7 +96,15 @@ class _Body:
             case c_ast.For(init=c_ast.DeclList(decls=[index]), cond=cond, next=next_, stmt=inner):
                 yield from self._statement(index)
                 yield "while", self.tree(cond), (*self._inner(inner), *self._statement(next_))
-            case c_ast.Assignment(op="=" | "+=" as operator, lvalue=place, rvalue=value):
+            case c_ast.Assignment(lvalue=c_ast.StructRef(name=c_ast.StructRef(field=c_ast.ID(name="latest"))) as place):
+                match node.rvalue:
+                    case c_ast.ID(name="true"):
+                        pass  # a value is there that has come
+                    case c_ast.StructRef(name=c_ast.ID(name="samples"), field=field):
+                        yield "=", self.tree(place), (".", "samples", field.name)
+                    case _:
+                        raise not_understood(node)
+            case c_ast.Assignment(op="=" | "+=" | "-=" as operator, lvalue=place, rvalue=value):
                 yield operator, self.tree(place), self.tree(value)
             case c_ast.UnaryOp(op="p++", expr=place):
                 yield "+=", self.tree(place), "1"
