@@ -12,6 +12,8 @@ from conditions_support import CONDITIONS, DECLARED
 from lowered import texts
 from stepping import from_text
 from test_backends_rust import AGED, KEPT, OPENED, PAST, RATED, SIGNALS, TIMED, fit
+from test_each_c import RESPONSE
+from test_each_message_c import ANSWERED
 
 from ltlc.assurance.reading.c.files import WrittenInC
 from ltlc.assurance.reading.outcomes import Difference, ReadBack
@@ -77,7 +79,7 @@ OCCURS = "always (not once v > 2 3 times within 2 s or rate(scan) >= 4 Hz over 1
 WHOLE = [SIGNALS + property_ for property_ in (TIMED, OPENED, AGED, PAST, KEPT, AGES, COUNTED, OCCURS)]
 
 
-@pytest.mark.parametrize("text_", [*WHOLE, *RATED])
+@pytest.mark.parametrize("text_", [*WHOLE, RATED[1], RESPONSE, ANSWERED])
 def test_whatever_is_changed_in_the_text_is_refused(text_: str) -> None:
     compiled, whole = from_text(text_)
     text = emit(compiled, whole)

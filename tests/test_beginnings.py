@@ -117,7 +117,7 @@ def test_emitted_rust_does_what_is_defined_while_signals_are_silent(rate: str) -
     assert [isinstance(each, WrittenInC) and type(each.read_back()) for each in read] == [ReadBack] * 7
     if rust_compiler() is None:
         pytest.skip("there is no compiler for Rust here")
-    found = rust_programs(file, compiled, whole)
+    found = rust_programs(file, compiled, whole, MESSAGES)
     assert found is not None
     assert all(isinstance(judged(of, program), Replayed) for of, program in zip(compiled, found, strict=True))
 

@@ -134,7 +134,7 @@ def test_rust_begins_with_the_other_value(settings: str) -> None:
     assert [None if isinstance(each, Difference) else type(each.read_back()) for each in found] == [ReadBack] * len(
         found
     )
-    programs = rust_programs(file, compiled, specification)
+    programs = rust_programs(file, compiled, specification, MESSAGES)
     assert programs is not None
     assert all(isinstance(judged(*pair), Replayed) for pair in zip(compiled, programs, strict=True))
 

@@ -70,9 +70,10 @@ class _File:
         self.structs = self.c.structs
         self.names = self._names(labels)
         self.kept = self.c.kept_by()
-        shared = [each for each in self.structs if each in ("samples", "ticks", "monitors", *self.kept)]
-        self.properties = dict(zip((each for each in self.structs if each not in shared), self.names, strict=True))
-        self.types = {**self.properties, **{each: each[0].upper() + each[1:] for each in shared}}
+        self.optional = ("take", "go_on") if "take" in self.c.functions else ()
+        self.properties = dict(zip(self.kept, self.names, strict=True))
+        self.types = {each: self.properties.get(each) or each[0].upper() + each[1:] for each in self.structs}
+        self.sizes = self.c.sizes()
 
     def _names(self, labels: Sequence[str]) -> list[str]:
         """What properties are called, each of which has to recall its label."""
@@ -114,6 +115,7 @@ class _File:
         yield from _tokens(f"""
             #![allow(dead_code, non_camel_case_types, non_snake_case, unused_variables)]
             pub const NEVER: i64 = {NEVER};
+            {"".join(f"pub const {name}: u32 = {count};" for name, count in self.sizes.items())}
             {derive}, PartialEq, Eq)] pub enum Verdict {{ {named} }}
             {derive}, PartialEq, Eq)] pub struct Judgement {{
                 pub verdict: Verdict, pub since: i64, pub steps: u32, pub invalid: u32, }}
@@ -128,33 +130,39 @@ class _File:
                 yield from self._function(name)
         for short, struct in self.structs.items():
             if short != "samples":
-                made = "pub " if short == "monitors" else ""
+                is_read = short in _TABLES and short not in self.properties
+                made, of = "pub " if short == "monitors" or is_read else "", "pub " if is_read else ""
                 members = [(each.name, self._type(each), self._first(each)) for each in struct.decls]
                 yield from _tokens(f"""
-                    {derive})] {made}struct {self.types[short]} {{ {"".join(f"{n}: {t}," for n, t, _ in members)} }}
+                    {derive})] {made}struct {self.types[short]} {{ {"".join(f"{of}{n}: {t}," for n, t, _ in members)} }}
                     impl {self.types[short]} {{ const NEW: Self = Self {{
                         {"".join(f"{n}: {f}," for n, _, f in members)} }};""")
+                begun = self.c.begins(short)
+                if begun is not None:
+                    yield from _tokens("pub const fn new() -> Self")
+                    yield _Body(("new", begun))
                 yield from self._of_monitors() if short == "monitors" else ()
                 for name in own:
                     if self.c.owner(name) == short:
                         yield from self._function(name)
                 yield "}"
-        yield from _tokens("impl Default for Monitors { fn default() -> Self { Self::new() } }")
+                if begun is not None:
+                    yield from _tokens(
+                        f"impl Default for {self.types[short]} {{ fn default() -> Self {{ Self::new() }} }}"
+                    )
 
     def _called(self) -> set[str]:
         """The functions that files share and that this one has."""
         return {name for word, name in zip(self.found, self.found[1:], strict=False) if word == "fn"}
 
     def _of_monitors(self) -> Iterator[str | _Body]:
-        """What makes monitors ready, and what asks them; without clocks, nothing depends on the time."""
+        """What asks monitors; without clocks, nothing depends on the time."""
         cases = "".join(
             f"""Property::{type_} => Judgement {{ verdict: self.{name}.verdict, since: self.{name}.since,
                 steps: self.{kept}.together.wrapping_add(self.{name}.apart).wrapping_sub(self.{name}.invalid),
                 invalid: self.{name}.invalid, }},"""
-            for (name, type_), kept in zip(self.properties.items(), self.kept, strict=True)
+            for (name, type_), kept in zip(self.properties.items(), self.kept.values(), strict=True)
         )
-        yield from _tokens("pub const fn new() -> Self")
-        yield _Body(("new", self.c.functions[f"{self.prefix}init"]))
         yield from _tokens(
             f"pub fn judgement(&self, property: Property) -> Judgement {{ match property {{ {cases} }} }}"
         )
@@ -165,18 +173,31 @@ class _File:
     def _function(self, name: str) -> Iterator[str | _Body]:
         owner, function = self.c.owner(name), self.c.functions[name]
         short = self.c.short(name)
-        if owner == "monitors" and short in ("init", "verdict_of", "steps_of", "invalid_of", "since_of"):
+        apart = ("verdict_of", "steps_of", "invalid_of", "since_of", "left_out_of")
+        if owner is not None and (short in apart or function == self.c.begins(owner)):
             return
         first, *rest = parameters(function)
-        given = [f"{each.name}: {self._type(each)}" for each in (rest if owner else (first, *rest))]
-        given = [each.replace("samples: Samples", "samples: &Samples") for each in given]
+        given = [f"{each.name}: {self._parameter(name, each)}" for each in (rest if owner else (first, *rest))]
         own = ["&self" if "const" in first.type.type.quals else "&mut self"] if owner else []
         public = "" if "static" in function.decl.storage else "pub "
-        result = _SCALARS[type_text(function.decl.type)]
+        result = self._result(type_text(function.decl.type))
         yield from _tokens(
             f"{public}fn {self.c.method(name)}({', '.join([*own, *given])}) {f'-> {result}' if result else ''}"
         )
         yield _Body((name, function))
+
+    def _parameter(self, function: str, node: Decl) -> str:
+        """The type of what a function is given: of samples, which there may be or not, or of another struct."""
+        type_ = self._type(node)
+        borrowed = f"&{type_}" if type_ in self.types.values() else type_
+        return f"Option<{borrowed}>" if node.name == "samples" and function in self.optional else borrowed
+
+    def _result(self, type_: str) -> str:
+        """The type of what a function returns, which is none where C has NULL."""
+        short = self.c.short(type_.removesuffix(" *"))
+        if short in self.types:
+            return f"Option<&{self.types[short]}>"
+        return "Verdict" if short == "verdict" else _SCALARS[type_]
 
     def _type(self, node: Node) -> str:
         """How a type is written."""
@@ -186,8 +207,9 @@ class _File:
 
     def _written(self, bare: str, whole: str) -> str:
         short = self.c.short(bare)
-        if array := re.fullmatch(r"(.*)\[(\d+)\]", whole):
-            return f"[{self._written(array[1].removesuffix(' *'), array[1])}; {array[2]}]"
+        if array := re.fullmatch(r"(.*)\[(\w+)\]", whole):
+            count = array[2] if array[2].isdigit() else f"{self.c.constant(array[2])} as usize"
+            return f"[{self._written(array[1].removesuffix(' *'), array[1])}; {count}]"
         if short in PLURALS:
             return f"&[{_SCALARS[PLURALS[short]]}]"
         return self.types.get(short) or _SCALARS[whole]
@@ -211,12 +233,18 @@ class _File:
         return "&[]" if type_.startswith("&[") else simple.get(type_, "0")
 
     def _sampled(self, members: Sequence[Decl]) -> Iterator[tuple[str, str, bool]]:
-        """Each value that may come, and each message, with its type, and whether it is one; a flag says that it comes."""
+        """Each value that may come, and each message, with its type, and whether it is a message.
+
+        A flag says that a value comes.
+        """
         values = [each for each in members if each.bitsize is None and each.name != "nothing"]
         told = [each for each in members if each.bitsize is not None][len(values) :]
         yield from ((each.name, f"Option<{self._type(each)}>", False) for each in values)
         yield from ((each.name, "bool", True) for each in told)
 
+
+_TABLES = ("ids", "slice", "instances", "instance", "violation")
+"""The structs of tables, whose members can be read."""
 
 _WITHOUT = {
     "begin": "pub fn begin(&mut self, time: i64) -> bool { self.pass(time) }",

@@ -11,7 +11,7 @@ from pathlib import PurePath
 
 from ltlc import __version__
 from ltlc.backends import c
-from ltlc.backends.inputs import origin, require_whole_runs
+from ltlc.backends.inputs import origin
 from ltlc.backends.names import class_name
 from ltlc.backends.rust.code import comment
 from ltlc.backends.rust.functions import FUNCTIONS, ONLY_IN_C, texts
@@ -64,7 +64,6 @@ def emit(compiled: Sequence[Compiled], specification: Specification) -> str:
 
 def in_c(compiled: Sequence[Compiled], specification: Specification) -> c.Files:
     """The files of C from which Rust is printed. Raises NotInTargetError."""
-    require_whole_runs(compiled)
     for primitive in (p.primitive for each in compiled for whole in _calculated(each) for p in _applied(whole)):
         if primitive in MISSING:
             raise NotInTargetError(f"the {primitive.value}, for which `core` has no function")
@@ -96,6 +95,7 @@ def file_of(compiled: Sequence[Compiled], specification: Specification) -> File:
     printer = Printer(trees, types, fields)
     functions = {name: printer.function(name) for name in _printed(trees)}
     of = {name: trees.owner(name) for name in functions}
+    tabled = [] if files.table is None else files.table.names
     code = "\n".join(line for text in functions.values() for line in text)
     text = template(__name__, "template.rs.jinja").render(
         about=_about(compiled, specification),
@@ -112,13 +112,16 @@ def file_of(compiled: Sequence[Compiled], specification: Specification) -> File:
                 "lifetime": types.lifetime(name),
                 "about": _described(name, trees),
                 "members": [(spelled(m.name), types.text(m), types.first(m)) for m in struct.decls],
+                "is_public": name == "monitors" or name in tabled,
+                "are_read": name in tabled,
+                "begun": printer.beginning(name),
                 "methods": [functions[each] for each in functions if of[each] == name],
             }
             for name, struct in trees.structs.items()
             if name != "samples"
         ],
         lifetime=types.lifetime("samples"),
-        begun=printer.beginning(),
+        sizes=trees.sizes,
         called=[trees.short(name) for name in functions],
     )
     return File(text, files, fields, types.borrows("samples"))
@@ -126,7 +129,8 @@ def file_of(compiled: Sequence[Compiled], specification: Specification) -> File:
 
 def _printed(trees: Trees) -> Iterator[str]:
     """The functions that are printed: not those that Rust has of its own, nor what is written by itself."""
-    apart = {"init", *(f"{what}_of" for what in ("verdict", "steps", "invalid", "since"))}
+    apart = {"init", *(f"{what}_of" for what in ("verdict", "steps", "invalid", "since", "left_out"))}
+    apart |= set() if trees.files.table is None else {f"{trees.files.table.stem}_init"}
     apart |= FUNCTIONS.keys() | ONLY_IN_C
     return (name for name in trees.functions if trees.short(name) not in apart)
 

@@ -11,7 +11,7 @@ Self abstract as async await become box break const continue crate do dyn else e
 let loop macro match mod move mut override priv pub ref return self static struct super trait true try type typeof union
 unsafe unsized use virtual where while yield
 """
-_RESERVED = frozenset(f"{_KEYWORDS} Some None Ok Err NEVER".split())
+_RESERVED = frozenset(f"{_KEYWORDS} Some None Ok Err LIMIT NEVER PLACES".split())
 _TYPES = frozenset(["Judgement", "Option", "Property", "Self", "Verdict"])
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from pycparser.c_ast import ArrayDecl, Decl, IdentifierType, Node, PtrDecl, TypeDecl
+from pycparser.c_ast import ArrayDecl, Constant, Decl, IdentifierType, Node, PtrDecl, TypeDecl
 
 from ltlc.backends.c.types import type_name
 from ltlc.backends.rust.names import spelled, struct_name
@@ -73,11 +73,15 @@ class Types:
             case Decl(type=inner) | TypeDecl(type=inner):
                 return self.text(inner, lifetime)
             case ArrayDecl(type=inner, dim=dim):
-                return f"[{self.text(inner, lifetime)}; {dim.value}]"
+                return f"[{self.text(inner, lifetime)}; {self._count(dim)}]"
+            case PtrDecl(type=TypeDecl(type=IdentifierType(names=[name]))) if self._is_struct(name):
+                return f"&{self.text(node.type, lifetime)}"
             case PtrDecl():
                 return scalar_text(Scalar.TEXT, lifetime)
             case IdentifierType(names=[name]):
                 short = self._trees.short(name)
+                if short == "verdict":
+                    return "Verdict"
                 if short in ARRAYS:
                     return type_text(Type(ARRAYS[short], is_array=True), lifetime)
                 if short in self._trees.structs:
@@ -85,6 +89,13 @@ class Types:
                 return "usize" if name == "size_t" else scalar_text(SCALARS[name])
             case _:
                 raise TypeError(node)
+
+    def _is_struct(self, name: str) -> bool:
+        return self._trees.short(name) in self._trees.structs
+
+    def _count(self, dim: Node) -> str:
+        """How many elements an array has."""
+        return dim.value if isinstance(dim, Constant) else f"{self._trees.constant(dim.name)} as usize"
 
     def first(self, node: Node) -> str:
         """The value that C has for 0."""
@@ -94,7 +105,7 @@ class Types:
             case Decl(type=inner) | TypeDecl(type=inner):
                 return self.first(inner)
             case ArrayDecl(type=inner, dim=dim):
-                return f"[{self.first(inner)}; {dim.value}]"
+                return f"[{self.first(inner)}; {self._count(dim)}]"
             case PtrDecl():
                 return '""'
             case IdentifierType(names=[name]):

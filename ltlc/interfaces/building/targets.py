@@ -159,7 +159,7 @@ class _Rust:
     def refuse(self) -> None:
         refuse_unwritable(self.path)
 
-    def make(self, compiled: Sequence[Compiled], specification: Specification, _: Messages) -> Made:
+    def make(self, compiled: Sequence[Compiled], specification: Specification, messages: Messages) -> Made:
         from ltlc.assurance.c_programs import rust_programs  # takes time, as what reads Rust does
         from ltlc.assurance.reading.rust import written as written_in_rust
         from ltlc.backends import rust
@@ -170,7 +170,7 @@ class _Rust:
             raise UnfitError(_unfit("Rust", rust.emit, specification, compiled)) from None
         own = (specification.rate, specification.timeout)
         read = written_in_rust(file.text, file.c.header, file.c.source, compiled, *own)
-        return Made(rust_programs(file, compiled, specification), read, lambda: {self.path: file.text})
+        return Made(rust_programs(file, compiled, specification, messages), read, lambda: {self.path: file.text})
 
 
 def _unfit(
