@@ -46,7 +46,8 @@ def _glue(file: File) -> Iterator[str]:
     for head, body in (
         ("gate_size(which: c_int) -> usize", f"[size_of::<{monitors}>(), size_of::<{samples}>()][which as usize]"),
         (f"gate_clear(s: *mut {samples})", "s.write(Samples::default())"),
-        (f"gate_init(m: *mut {monitors})", f"m.write({judge}::new())"),
+        # A table may be too large for the stack.
+        (f"gate_init(m: *mut {monitors})", f"static NEW: {monitors} = {judge}::new(); m.copy_from(&NEW, 1)"),
         (f"gate_begin(m: *mut {monitors}, time: i64) -> bool", _call(file, "begin", "time", "time > i64::MIN")),
         (f"gate_advance(m: *mut {monitors}, time: i64) -> bool", "(*m).advance(time)"),
         (f"gate_next_deadline(m: *const {monitors}) -> i64", _call(file, "next_deadline", "", "emitted::NEVER")),
