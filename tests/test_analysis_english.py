@@ -27,6 +27,7 @@ DECLARATIONS = (
 MORE = f"""{DECLARATIONS}decl goal /goal Float64.data
 decl id /a action_msgs/GoalStatusArray.status_list[].goal_info.goal_id
 decl status /a action_msgs/GoalStatusArray.status_list[].status
+decl spot /spot Point
 model robot: position /odom Odometry.pose.pose.position ;
 zone kitchen = [(0, 0), (4, 0), (4, 3)]
 """
@@ -39,6 +40,7 @@ zone kitchen = [(0, 0), (4, 0), (4, 3)]
             "never once new x 4 times within 10 s",
             "There is no moment at which at least 4 messages of x arrived in the last 10 s.",
         ),
+        ("always age(spot) <= 1 s", "At every moment, the last message of spot is at most 1 s old."),
         ("always not once new x 1 times", "At every moment, fewer than 1 message of x arrived so far."),
         (
             "always rate(x) >= 3 Hz over 2 s",

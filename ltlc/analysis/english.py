@@ -224,7 +224,8 @@ class English:
         condition = self._atoms[news.name].condition
         assert isinstance(condition, IsTrue)
         assert isinstance(condition.operand, New)
-        return signal_text(condition.operand.signal)
+        signal = condition.operand.signal
+        return signal.whole or signal_text(signal)
 
 
 def _news_of(atom: Atom) -> str | None:
