@@ -55,7 +55,7 @@ class New:
     signal: str
 
     def __str__(self) -> str:
-        return f"new {self.signal}"
+        return f"new {self.signal.removesuffix('.x')}"  # the vector of which it is x
 
 
 Wanted = Input | Recent | Slope | New

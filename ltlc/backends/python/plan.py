@@ -199,7 +199,7 @@ def _instances(plan: _Plan, compiled: Compiled, of: Instances) -> Group:
     _, heard = next(fields(of.signal))
     parts_ = (
         _own_signals(plan, compiled),
-        f"name={literal(of.signal.name)}",
+        f"name={literal(of.signal.heard)}",
         f"topic={literal(heard.topic)}",
         f"mark={literal(of.mark.name)}",
         f"limit={of.limit or plan.most_ids!r}",
