@@ -161,7 +161,7 @@ def speaks_of_its_ids(checker: Checker, node: syntax.EachOf, found: PropertySpec
     if not found.slicing.topics.isdisjoint(topics(found)):
         return True
     named = " and ".join(f"`{topic}`" for topic in sorted(found.slicing.topics))
-    message = f"the property reads nothing from {named}: it is the same for every `{node.variable.text}`"
+    message = f"the property uses neither `{node.variable.text}` nor a value or news from {named}"
     checker.report(
         "LTL113", node.body.span, message, help=f"use `{node.variable.text}` in the property, or omit `each`"
     )
