@@ -94,15 +94,14 @@ class Slices(ToldSlices):
             value, ids = values[place], self.ids
             # Most values are ids; of bytes, the id has yet to be made.
             one = ids.slices.get(value)
-            if one is None and (id_ := id_of(value)) is None:
-                ids.without_id += 1
-            else:
+            if one is not None:
                 ids.messages += 1
-                one = one or ids.slices.get(id_)
+            elif (id_ := ids.counted(value)) is not None:
+                one = ids.slices.get(id_)
                 if one is None and not self._passes(time, id_, part, values):
                     one = self._new(time, id_)
-                if one is not None:
-                    self._give(time, one, part, values)
+            if one is not None:
+                self._give(time, one, part, values)
         if self._is_recounted or self.openings is not None:
             self._tell(time, changes)
 
@@ -335,8 +334,7 @@ class Slices(ToldSlices):
     def _settle(self, one: Slice) -> None:
         """Keep and count a slice, unless it is decided, or as new."""
         verdict = one.verdict
-        is_none = verdict is Verdict.NOT_STARTED and self.openings is not None
-        if is_none and self.openings.withdraws(one):
+        if verdict is Verdict.NOT_STARTED and self._withdraws(one):
             self._drop(one)
             return
         if verdict is not one.counted:
@@ -353,6 +351,10 @@ class Slices(ToldSlices):
             one.scheduled = until
             heappush(self._due, (until, one.id))
             self.soon = self._due[0][0]
+
+    def _withdraws(self, one: Slice) -> bool:
+        """Whether a message opened nothing, for there was no step."""
+        return self.openings is not None and self.openings.withdraws(one)
 
     def _recount(self, one: Slice) -> None:
         self.ids.count(one)
