@@ -29,7 +29,6 @@ decl id /a action_msgs/GoalStatusArray.status_list[].goal_info.goal_id
 decl status /a action_msgs/GoalStatusArray.status_list[].status
 decl spot /spot Point
 model robot: position /odom Odometry.pose.pose.position ;
-decl spot /spot PointStamped.point
 zone kitchen = [(0, 0), (4, 0), (4, 3)]
 """
 
@@ -94,7 +93,6 @@ zone kitchen = [(0, 0), (4, 0), (4, 3)]
         ),
         ("always @{spot, -1} == spot", "At every step, what spot was 1 sample ago is exactly spot."),
         ("always (new spot implies on)", "At every moment, if a message of spot arrives, then on is true."),
-        ("always age(spot) < 1 s", "At every moment, the last message of spot is less than 1 s old."),
         ("each new spot: eventually on", "For each message of spot: at some moment from there on, on is true."),
         ("always nearest(x, scan) < 2", "At every step, the element of scan nearest to x is less than 2."),
         ("always angle_between(x, 1) < 2", "At every step, the angle between x and 1 is less than 2."),
