@@ -14,7 +14,7 @@ from itertools import chain
 import numpy as np
 
 from ltlc.inputs.recordings.blocks import Block, Places
-from ltlc.monitoring.columns.alone import take_alone
+from ltlc.monitoring.columns.alone import Place, take_alone
 from ltlc.monitoring.columns.elements import Elements, elements
 from ltlc.monitoring.columns.following import follow
 from ltlc.monitoring.columns.ids import Runs
@@ -29,6 +29,7 @@ from ltlc.monitoring.columns.tracks import Stretch, count_invalid
 from ltlc.runtime.properties import Moment
 from ltlc.runtime.session import Plan
 from ltlc.runtime.slice_ids import Slice
+from ltlc.runtime.slice_keys import Id
 from ltlc.runtime.slice_steps import Slices
 from ltlc.runtime.times import NEVER
 from ltlc.semantics.durations import Nanoseconds
@@ -327,7 +328,7 @@ class BySlices:
         self._known = Known(self.slices, self._of, self._tables.machine)
 
 
-def _in_order(violated: Violated) -> tuple[object, ...]:
+def _in_order(violated: Violated) -> tuple[Place, Id]:
     """By what violations are ordered, as by rows: those of a clock at one time by their ids, of a step by age."""
     place, begins, one, failure = violated
     return place, one.id if failure.by_time else begins
