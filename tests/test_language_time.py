@@ -142,7 +142,7 @@ def test_what_decides_a_property_is_what_it_reads() -> None:
 
 def test_a_message_is_news_of_all_that_is_read_from_its_topic() -> None:
     found = only("always ((new goal.y or age(goal.x) <= 1 s) implies new scan) and age(goal.y) <= 1 s")
-    assert [atom.name for atom in found.atoms] == ["new goal.y", "message on goal", "new scan"]
+    assert [atom.name for atom in found.atoms] == ["new goal", "message on goal", "new scan"]
     assert len({clock for clock in timed_atoms(encode(found.property, EPISODE)) if isinstance(clock, Age)}) == 1
 
 

@@ -40,7 +40,9 @@ class Owed:
 
 
 def id_text(id_: Id) -> str:
-    """An id as a reader knows it."""
+    """An id as a reader knows it: a text that would not stand alone in quotes."""
+    if isinstance(id_, str) and (not id_ or any(mark in id_ for mark in ',;:"')):
+        return printable(json.dumps(id_, ensure_ascii=False))
     return printable(str(id_).lower() if isinstance(id_, bool) else str(id_))
 
 

@@ -110,6 +110,12 @@ class Field:
         depth = self.path.index(Each()) if Each() in self.path else len(self.path)
         return Field(self.topic, self.message, self.path[:depth])
 
+    def is_beside(self, other: Field) -> bool:
+        """Whether two arrays are fields of one array of messages, or are side by side in a message."""
+        if Each() in self.path or Each() in other.path:
+            return self.list == other.list
+        return self.topic == other.topic and self.path[:-1] == other.path[:-1]
+
 
 @dataclass(frozen=True, slots=True)
 class Signal:

@@ -137,7 +137,8 @@ def components(thing: Thing, quantity: str) -> tuple[Expression, ...] | None:
     path = SOURCES[thing.message](thing.name).get(quantity)
     if path is not None:
         field = Field(thing.topic, thing.message, path)
-        return tuple(signal(f"{thing.name}.{quantity}.{axis}", _inside(field, axis)) for axis in axes)
+        whole = f"{thing.name}.{quantity}"
+        return tuple(signal(f"{whole}.{axis}", _inside(field, axis), whole=whole) for axis in axes)
     if quantity != "velocity":
         return None
     position = components(thing, "position") or ()
