@@ -33,7 +33,7 @@ class Openings:
         self.opener = opener
         self.messages = messages
         self.before = before
-        before.number = -1  # it is none of those that are kept
+        before.number = -1  # it is not one of those that are kept
         is_timed = before.property.timed
         self._quick = attrgetter("state", "due") if is_timed else attrgetter("state")
         self._uncounted: Counter[str] = Counter()
@@ -112,7 +112,7 @@ class Openings:
 
     def alike(self) -> list[Slice]:
         """Those instances that go on like an earlier one, which now stands for them."""
-        # Clocks that were set at different times tell most of them apart.
+        # Clocks that were set at different times distinguish most of them.
         monitors = [one.monitor for one in self.messages.slices.values()]
         if len(set(map(self._quick, monitors))) == len(monitors):
             return []
