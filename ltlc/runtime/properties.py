@@ -256,7 +256,7 @@ class MonitoredProperty:
         return _with(self.excused, values)
 
     def shown(self, values: Sequence[Value]) -> Sequence[Value]:
-        """`values` with what signals are before they have samples, if that was said."""
+        """`values`, with what signals without samples are, if that is defined."""
         return _with((each for each in self.excused if not each.news), values)
 
     def missed(self, values: Sequence[Value]) -> Wanted | None:

@@ -79,7 +79,7 @@ def _came_early(
 def _of_clock(clock: Clock, due: int, time: int, passed: int) -> Condition:
     """What a clock that is `due` then, so many bounds of which have passed, decides.
 
-    An age that has just passed its bound is not told.
+    An age that has just passed its bound is not reported.
     """
     age = None
     if clock.is_age and time > due + 1:

@@ -1,4 +1,4 @@
-"""Which ids came, which of them are kept, and what their slices say together."""
+"""Which ids came, which of them are kept, and the verdict of their slices together."""
 
 from __future__ import annotations
 

@@ -112,7 +112,7 @@ class Openings:
 
     def alike(self) -> list[Slice]:
         """Those instances that go on like an earlier one, which now stands for them."""
-        # Clocks that were set at different times tell most of them apart.
+        # Clocks that were set at different times distinguish most of them.
         monitors = [one.monitor for one in self.messages.slices.values()]
         if len(set(map(self._quick, monitors))) == len(monitors):
             return []

@@ -162,7 +162,7 @@ class Slices(ToldSlices):
                 self._give(time, one, part, (True,))
 
     def _is_before(self, one: Slice) -> bool:
-        """Whether this is no slice, but the run before any instance."""
+        """Whether this is the run before any instance, rather than a slice."""
         return self.openings is not None and one is self.openings.before
 
     # Slices begin.

@@ -72,7 +72,7 @@ class Files:
         return [signal for group in groups for signal in group.readings]
 
     def text_of(self, number: int) -> list[str]:
-        """What the files say of the property with this number: its own code, and that of what it reads."""
+        """What the files have for the property with this number: its own code, and that of what it reads."""
         writer = self.properties[number]
         return [
             *writer.members(),

@@ -72,7 +72,7 @@ class OpenTable:
         return lines([Do("return ", conjunction(found))], INDENT)
 
     def _kept(self) -> Iterator[str]:
-        """What tells instances apart, as it was before something came."""
+        """What distinguishes instances, as it was before something came."""
         yield from (f"int64_t old_{due} = own->{due}" for due in self.writer.dues)
         yield f"{self.writer.state_type} old_state = own->state"
         for named in self._openings:

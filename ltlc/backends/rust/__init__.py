@@ -49,7 +49,7 @@ MISSING = frozenset(
 
 @dataclass(frozen=True, slots=True)
 class File:
-    """The text of a file, and the files of C that it says the same as."""
+    """The text of a file, and the files of C that it is equivalent to."""
 
     text: str
     c: c.Files
