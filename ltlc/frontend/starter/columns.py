@@ -53,7 +53,7 @@ def _topic(path: Path, name: str) -> Topic:
 def _count(path: Path, signal: Signal) -> int | None:
     """How many values the table has of `signal`; None if it has other ones instead. Raises RecordingError."""
     table = open_recording(path, {signal.name: signal})
-    if signal.name not in table.columns:  # its columns are those of elements, and it is no array
+    if signal.name not in table.columns:  # its columns are those of elements, and it is not an array
         return None
     try:
         return sum(len(block.samples[signal.name].rows) for block in table.blocks())
