@@ -26,7 +26,7 @@ from ltlc.specification.specification import Instances, Slicing
 
 
 class Table(Monitors):
-    """A table of ids in a library in one run; what is said of monitors is said of all ids."""
+    """A table of ids in a library in one run; as a monitor, but of all ids."""
 
     def __init__(self, library: Loaded) -> None:
         super().__init__(library)

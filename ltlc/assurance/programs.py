@@ -31,7 +31,7 @@ class Program(Protocol):
     """The emitted code of one property."""
 
     def runs(self, compiled: Compiled, samples: Samples) -> Iterator[Run[Any]]:
-        """The runs on which it is judged; `samples` are of what its messages say."""
+        """The runs on which it is judged; `samples` are those of its messages."""
         ...
 
     def start(self, settings: Any) -> Stepper[Any]:
@@ -66,7 +66,7 @@ def programs(
 
 
 def _told(compiled: Compiled) -> list[Input]:
-    """What a standalone class is told at a step, which keeps the history itself."""
+    """The arguments of a step of a standalone class, which keeps the history itself."""
     inputs = compiled.specification.inputs()
     return [*dict.fromkeys(i if isinstance(i, New) else Current(i.signal) for i in inputs)]
 
@@ -228,7 +228,7 @@ class Monitored:
         return replace(plan, signals=tuple(emitted.by_name[name] for name in kept), properties=(monitored,))
 
     def read(self, said: Said) -> Sequence[Any]:
-        """What the emitted reader takes from a message that says this."""
+        """What the emitted reader takes from a message with these contents."""
         if said not in self._values:
             topic = self.emitted.topics[said.topic]
             message = self.messages.build(topic.message, said.content)

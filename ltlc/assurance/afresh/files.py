@@ -20,7 +20,7 @@ from ltlc.compiler import Compiled
 from ltlc.specification.specification import Specification
 
 MOST_CHARACTERS = 100_000
-"""How many more a file may have than twice what is emitted: what is larger is not taken apart."""
+"""A file may have so many more than twice what is emitted: larger ones are not read."""
 
 OF_C = (".h", ".c", ".hpp")
 
@@ -47,7 +47,7 @@ class Code:
 
     @property
     def version(self) -> str | None:
-        """The version of ltlc that the files say has made them."""
+        """The version of ltlc that made the files, as they say."""
         heads = (" ".join(text[:4000].split()) + " " for text in self.texts.values())
         return next((found[1] for found in map(_MADE_BY.search, heads) if found), None)
 
@@ -119,7 +119,7 @@ def _metadata(code: Code) -> Metadata:
 
 
 def _called(specification: Specification, code: Code) -> Specification:
-    """The specification under the name of which the files say that they were made: nodes are called after it."""
+    """The specification under the name in the files, after which nodes are named."""
     text, pattern = code.texts.get("package.xml", ""), _PACKAGE_OF
     if code.target == "ros2":
         (text,), pattern = code.texts.values(), _NODE_OF

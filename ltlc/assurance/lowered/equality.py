@@ -129,7 +129,7 @@ class _Comparison:
         return self.rows[target]
 
     def require_reads(self, judged: Judged) -> None:
-        """What is read, kept, counted and asked not to be NaN is what the property says. Raises DiffersError."""
+        """Raise DiffersError unless what is read, kept, counted and asked not to be NaN is as in the property."""
         machine = self.machine
         if machine.inputs != tuple(map(said, judged.specification.inputs())):
             raise DiffersError("other inputs are read")
@@ -196,7 +196,7 @@ class _Comparison:
             self.todo.append(place)
 
     def require_states(self) -> None:
-        """Something leads to every state, which says where clock steps lead if one can come. Raises DiffersError."""
+        """Raise DiffersError unless every state is reached, and defines clock steps if there can be one."""
         steps = [self._outcomes(state.step) for state in self.machine.states]
         expires = [[] if state.expire is None else self._outcomes(state.expire) for state in self.machine.states]
         states = enumerate(self.machine.states)
