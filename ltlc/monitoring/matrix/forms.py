@@ -47,7 +47,7 @@ def results_text(of: Traced) -> str:
 
 
 def gaps(matrix: Matrix) -> dict[str, list[str]]:
-    """What is not covered, under titles, in sentences; without results nothing is said of these."""
+    """What is not covered, under titles, in sentences; without results these are omitted."""
     told = {
         "Requirements without a property": [_named(each) for each in matrix.uncovered],
         "Requirements that the list does not have": [_named(each) for each in matrix.unlisted],
