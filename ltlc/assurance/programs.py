@@ -16,7 +16,7 @@ from ltlc.assurance.replay import Run, Shown, Stepper, settled
 from ltlc.assurance.sliced_traffic import SlicedTraffic
 from ltlc.assurance.sources import given
 from ltlc.assurance.timed_program import TimedClass
-from ltlc.assurance.traffic import Begun, Event, Heard, Passed, Quiet, Said, Settings, Together, Traffic
+from ltlc.assurance.traffic import Begun, Event, Heard, Passed, Quiet, Said, Settings, Together, Traffic, rings
 from ltlc.assurance.values import RATE, Frame, Samples
 from ltlc.backends.python import standalone_classes
 from ltlc.compiler import Compiled
@@ -202,14 +202,7 @@ class Monitored:
                 raise TypeError("a node takes messages one by one")
             case Quiet():
                 pass
-        changes: list[Any] = []
-        rang = None
-        while (due := rows.due()) is not None and due <= event.time:
-            if due == rang:
-                raise RuntimeError(f"the timer rings at {due} ns again and again")
-            changes += rows.advance(due)
-            rang = due
-        return changes
+        return [change for due in rings(rows.due, event.time) for change in rows.advance(due)]
 
     @cached_property
     def _plan(self) -> Any:

@@ -78,13 +78,17 @@ def _package_at(folder: Path) -> Code:
 
 
 def _read(path: Path) -> str:
+    return text_at(path, "a file of code").replace("\r\n", "\n")
+
+
+def text_at(path: Path, what: str) -> str:
+    """The text of the file at `path`, which is to be `what`. Raises UnusableError."""
     try:
-        text = path.read_bytes().decode("utf-8").replace("\r\n", "\n")
+        return path.read_bytes().decode("utf-8")
     except OSError as error:
         raise UnusableError(f"{path} cannot be read: {error.strerror or error}") from None
     except UnicodeDecodeError:
-        raise UnusableError(f"{path} is not a file of code: it is not UTF-8 text") from None
-    return text
+        raise UnusableError(f"{path} is not {what}: it is not UTF-8 text") from None
 
 
 def emitted(code: Code, compiled: Sequence[Compiled], specification: Specification) -> Mapping[str, str]:

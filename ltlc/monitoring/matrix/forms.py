@@ -8,9 +8,9 @@ from typing import Any
 
 from ltlc.base.provenance import provenance
 from ltlc.base.render.table import aligned
-from ltlc.monitoring.campaigns.tally import Result, counted
+from ltlc.monitoring.campaigns.tally import Result
 from ltlc.monitoring.matrix.matrix import Covered, Judged, Matrix, State, Traced
-from ltlc.runtime.reports import printable
+from ltlc.runtime.reports import counted, printable
 
 
 def text(matrix: Matrix) -> str:
@@ -80,7 +80,7 @@ def summary(matrix: Matrix) -> str:
     words = {State.HOLDS: "that hold", State.NO_PROPERTY: "without a property"}
     parts = [f"{states.count(state)} {words.get(state, state.value)}" for state in shown if state in states]
     told = f": {', '.join(parts)}" if parts else ""
-    properties = counted(len(matrix.properties), "property").replace("propertys", "properties")
+    properties = counted(len(matrix.properties), "property", "properties")
     return f"{counted(len(states), 'requirement')}{told}; {properties}"
 
 
