@@ -33,7 +33,7 @@ class Openings:
         self.opener = opener
         self.messages = messages
         self.before = before
-        before.number = -1  # it is none of those that are kept
+        before.is_kept = True  # beside the instances
         is_timed = before.property.timed
         self._quick = attrgetter("state", "due") if is_timed else attrgetter("state")
         self._uncounted: Counter[str] = Counter()
@@ -41,19 +41,13 @@ class Openings:
 
     def _made_probe(self) -> Monitor | None:
         """A monitor to try steps of instances; None if states do not decide these."""
-        of, monitor = self.before.property, self.before.monitor
-        known = {
-            "state",
-            "verdict",
-            "invalid",
-            "due",
-            *(each.due for each in of.clocks),
-        }
+        of = self.before.property
         has_more = bool(of.kept or of.events or of.excused or of.ages)
         is_open = all(not each.inner and each.closes is None for each in of.scopes)
-        has_only = known == vars(monitor).keys() and not has_more
-        is_simple = len(of.clocks) == 1 and is_open and has_only
-        return forked(monitor) if is_simple else None
+        # A clock without bounds is that of a count, which has more than its state.
+        bounds = [each.bounds for each in of.clocks]
+        is_simple = len(bounds) == 1 and bool(bounds[0]) and is_open and not has_more
+        return forked(self.before.monitor) if is_simple else None
 
     def changed(
         self, time: int, values: Sequence[Value], steps: int, given: list[Slice]
@@ -94,7 +88,7 @@ class Openings:
     def open(self) -> Slice | None:
         """A message comes: an instance that has had no step; None without a place."""
         number = self.messages.number()
-        if not self.messages.find_place(number):
+        if not self.messages.find_place():
             return None
         one = self.before.fork()
         one.id, one.invalid_because, one.scheduled = number, self._uncounted, NEVER
@@ -112,7 +106,7 @@ class Openings:
 
     def alike(self) -> list[Slice]:
         """Those instances that go on like an earlier one, which now stands for them."""
-        # Clocks that were set at different times tell most of them apart.
+        # Clocks that were set at different times distinguish most of them.
         monitors = [one.monitor for one in self.messages.slices.values()]
         if len(set(map(self._quick, monitors))) == len(monitors):
             return []
