@@ -16,8 +16,8 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
+from ltlc.assurance.evidence.claims import refusal
 from ltlc.assurance.evidence.document import Claim, Document, Head, Line, StatedAtom, digest, printed
-from ltlc.assurance.evidence.judge import refusal
 from ltlc.base.provenance import FileDigest
 from ltlc.semantics.certificate_text import to_text
 from ltlc.semantics.ltl import And, Atom

@@ -10,7 +10,7 @@ import hashlib
 import json
 import re
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 from ltlc.base.provenance import FileDigest
@@ -46,6 +46,40 @@ class StatedAtom(NamedTuple):
     condition: Data
 
 
+class StatedCount(NamedTuple):
+    """A count by its name in the certificate, and what is counted; see `counting`."""
+
+    name: str
+    said: str
+
+
+class StatedScope(NamedTuple):
+    """A scope at whose opening values are taken, by its number in the property of the certificate.
+
+    It is open from one step up to another one, which are counted from 0; the last time perhaps to the end.
+    """
+
+    number: int
+    open: tuple[tuple[int, int | None], ...]
+
+    @property
+    def said(self) -> str:
+        """As documents have it."""
+        spans = (f" {first}-{'' if end is None else end}" for first, end in self.open)
+        return f"{self.number}{''.join(spans)}"
+
+
+@dataclass(frozen=True, slots=True)
+class StatedSlice:
+    """What was judged of one id, which is written as JSON: as of a claim its letters, up to when, and the verdict."""
+
+    id: str
+    letters: tuple[Line, ...] | Summed
+    until: Nanoseconds
+    verdict: Verdict
+    decided: Nanoseconds
+
+
 @dataclass(frozen=True, slots=True)
 class Head:
     """What was judged, and by what.
@@ -72,8 +106,11 @@ class Head:
 class Claim:
     """The verdict of one property, and the letters that it follows from.
 
-    Ages count from `session` until a message comes. The run was looked at up to `until`: the moment of the decision, or
-    the end of the recording. The verdict was right from `decided` on.
+    What is counted follows from the letters. Behind the atoms, these have one for each of the `scopes`, which says that
+    it is open. Where the atom with the number `opens` holds, an instance of the property opens. With a `key`, a field,
+    there are letters of `slices` only, in the order of their first messages. Ages count from `session` until a message
+    comes. The run was looked at up to `until`: the moment of the decision, or the end of the recording. The verdict was
+    right from `decided` on.
     """
 
     label: str
@@ -86,6 +123,23 @@ class Claim:
     decided: Nanoseconds
     requirement: str | None = None
     verifies: tuple[str, ...] = ()
+    counts: tuple[StatedCount, ...] = ()
+    scopes: tuple[StatedScope, ...] = ()
+    opens: int | None = None
+    key: Data | None = None
+    slices: tuple[StatedSlice, ...] = ()
+
+    def of_slice(self, slice_: StatedSlice) -> Claim:
+        """The claim about one slice alone."""
+        return replace(
+            self,
+            key=None,
+            slices=(),
+            letters=slice_.letters,
+            until=slice_.until,
+            verdict=slice_.verdict,
+            decided=slice_.decided,
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -183,13 +237,28 @@ def _claim_lines(claim: Claim) -> Iterator[str]:
     for name, condition in claim.atoms:
         yield f"atom {name}"
         yield f"is {condition_text(condition)}"
+    for name, said in claim.counts:
+        yield f"count {name}"
+        yield f"of {said}"
+    yield from (f"scope {each.said}" for each in claim.scopes)
+    if claim.opens is not None:
+        yield f"instances a{claim.opens}"
+    if claim.key is not None:
+        yield f"key {condition_text(claim.key)}"
     yield f"session {claim.session}"
-    if isinstance(claim.letters, Summed):
-        yield f"letters {claim.letters.count} sha256 {claim.letters.sha256}"
+    for each in claim.slices:
+        yield f"slice {each.id}"
+        yield from _verdict_lines(each)
+    yield from _verdict_lines(claim)
+
+
+def _verdict_lines(of: Claim | StatedSlice) -> Iterator[str]:
+    if isinstance(of.letters, Summed):
+        yield f"letters {of.letters.count} sha256 {of.letters.sha256}"
     else:
-        yield from (text.rstrip("\n") for text in letters_text(claim.letters))
-    yield f"until {claim.until}"
-    yield f"verdict {claim.verdict.value} {claim.decided}"
+        yield from (text.rstrip("\n") for text in letters_text(of.letters))
+    yield f"until {of.until}"
+    yield f"verdict {of.verdict.value} {of.decided}"
 
 
 _TEXT = re.compile(r"[^\x00-\x1f\x7f\x85\u2028\u2029]+")
@@ -316,23 +385,52 @@ class _Reader:
         requirement = self._optional(f"requirement {_SOME}")
         verifies = tuple(each for (each,) in self._all(f"verifies {_SOME}"))
         atoms = tuple(self._atoms())
+        counts, scopes = tuple(self._counts()), tuple(self._scopes())
+        opens = self._optional(r"instances a(0|[1-9][0-9]{0,5})")
+        key = None if (found := self._optional(r"key (\{.*\})")) is None else self._json(found)
         (session,) = self._need(f"session {_TIME}", "when the session began")
-        letters = self._letters(len(atoms))
-        (until,) = self._need(f"until {_TIME}", "the time up to which the run was looked at")
-        verdicts = "|".join(verdict.value for verdict in Verdict)
-        verdict, decided = self._need(f"verdict ({verdicts}) {_TIME}", "a verdict and its time")
+        slices = [] if key is None else [*self._slices(len(atoms) + len(scopes))]
+        letters, until, verdict, decided = self._judged(len(atoms) + len(scopes))
         return Claim(
-            label, text, atoms, int(session), letters, int(until), Verdict(verdict), int(decided), requirement, verifies
-        )
+            label, text, atoms, int(session), letters, until, verdict, decided, requirement,
+            verifies, counts, scopes, None if opens is None else int(opens), key, tuple(slices),
+        )  # fmt: skip
 
     def _atoms(self) -> Iterator[StatedAtom]:
         for (name,) in self._all(f"atom {_SOME}"):
             (condition,) = self._need(r"is (\{.*\})", "what the atom is")
-            try:
-                yield StatedAtom(name, json.loads(condition))
-            except (ValueError, RecursionError):
-                self.at -= 1
-                raise _RefusedError("what the atom is, is not JSON") from None
+            yield StatedAtom(name, self._json(condition))
+
+    def _json(self, text: str) -> Data:
+        """What the line that was taken last says as JSON."""
+        try:
+            found: Data = json.loads(text)
+        except (ValueError, RecursionError):
+            self.at -= 1
+            raise _RefusedError("what the atom is, is not JSON") from None
+        return found
+
+    def _slices(self, atoms: int) -> Iterator[StatedSlice]:
+        for (id_,) in self._all(f"slice {_SOME}"):
+            yield StatedSlice(id_, *self._judged(atoms))
+
+    def _judged(self, atoms: int) -> tuple[tuple[Line, ...] | Summed, Nanoseconds, Verdict, Nanoseconds]:
+        """Letters, up to when, and a verdict with its time."""
+        letters = self._letters(atoms)
+        (until,) = self._need(f"until {_TIME}", "the time up to which the run was looked at")
+        verdicts = "|".join(verdict.value for verdict in Verdict)
+        verdict, decided = self._need(f"verdict ({verdicts}) {_TIME}", "a verdict and its time")
+        return letters, int(until), Verdict(verdict), int(decided)
+
+    def _counts(self) -> Iterator[StatedCount]:
+        for (name,) in self._all(f"count {_SOME}"):
+            (said,) = self._need(f"of {_SOME}", "what is counted")
+            yield StatedCount(name, said)
+
+    def _scopes(self) -> Iterator[StatedScope]:
+        for number, spans in self._all(r"scope (0|[1-9][0-9]{0,8})((?: [0-9]{1,18}-[0-9]{0,18})*)"):
+            pairs = (span.split("-") for span in spans.split())
+            yield StatedScope(int(number), tuple((int(first), int(end) if end else None) for first, end in pairs))
 
     def _letters(self, atoms: int) -> tuple[Line, ...] | Summed:
         found = self._take(f"letters {_TIME} sha256 {_HEX}")

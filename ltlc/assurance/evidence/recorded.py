@@ -34,6 +34,8 @@ EXACT = 2**53
 """Up to here integers are doubles."""
 MOST_TICKS = 10**8
 MOST_COMBINATIONS = 10**6
+MOST_ROUNDS = 100
+"""So often it is looked anew which steps there are, as that depends on values at openings."""
 PIECE = 1 << 20
 """So many elements of arrays, or lines, are looked at at once."""
 BAGS = (".mcap", ".db3", ".bag")
@@ -65,8 +67,19 @@ def covered(problem: str) -> Iterator[None]:
 # The document --------------------------------------------------------------------------------------------------------
 
 HEAD = {"ltlc", "specification", "certificates", "recording", "definition", "rate", "timeout", "stamp", "from", "to"}
-MANY = {"recording", "definition", "verifies", "atom", "is"}
-CLAIM = {"property", "text", "requirement", "verifies", "atom", "is", "session", "letters", "until", "verdict"}
+MANY = {"recording", "definition", "verifies", "atom", "is", "count", "of", "scope"}
+CLAIM = MANY - HEAD | {
+    "instances",
+    "key",
+    "slice",
+    "property",
+    "text",
+    "requirement",
+    "session",
+    "letters",
+    "until",
+    "verdict",
+}
 
 
 @dataclass
@@ -74,6 +87,7 @@ class Part:
     """The head of a document, or a claim: what follows each word. `lines` are times and letters, bits of the atoms."""
 
     said: dict[str, list[str]] = field(default_factory=dict)
+    slices: list[Part] = field(default_factory=list)
     lines: list[tuple[int, int]] = field(default_factory=list)
     found: tuple[Array, Array] | None = None
 
@@ -94,6 +108,11 @@ class Part:
     def atoms(self) -> list[Json]:
         """What the atoms are."""
         return [json.loads(each) for each in self.said.get("is", [])]
+
+    @property
+    def keys(self) -> list[Json]:
+        """The field that has ids, if it is about each id."""
+        return [json.loads(each) for each in self.said.get("key", [])]
 
 
 @dataclass
@@ -134,6 +153,10 @@ def parsed(rows: list[str]) -> Document:
         if word == "property":
             found.claims.append(Part())
         part, known = (found.claims[-1], CLAIM) if found.claims else (found.head, HEAD)
+        if word == "slice":
+            part.slices.append(Part())
+        if part.slices and "verdict" not in part.slices[-1].said:
+            part = part.slices[-1]
         if word in known:
             if word in part.said and word not in MANY:
                 raise Refused(f"written twice: {word}")
@@ -209,6 +232,8 @@ class Recording:
     first: int | None
     last: int | None
     topics: dict[str, Topic]
+    sliced: str | None = None
+    """If it is the slice of an id, the topic whose messages it has some of; it begins with the first of these."""
     kept: dict[Any, Any] = field(default_factory=dict)
 
 
@@ -256,7 +281,7 @@ def value_at(value: Any, around: Any, path: list[Json]) -> Any:
             case ["parallel", names, name]:
                 at = next((n for n, each in enumerate(getattr(around, names)) if each == name), len(value))
                 value = value[at] if at < len(value) else None
-            case ["each"]:
+            case ["each"] | ["own"]:
                 return [value_at(each, value, path[depth + 1 :]) for each in value]
             case ["bytes"]:
                 text = bytes(value).hex()
@@ -272,8 +297,10 @@ def value_at(value: Any, around: Any, path: list[Json]) -> Any:
 def read(path: Path, document: Document) -> Recording:
     """Read what the claims of a document need."""
     with covered("what it reads is not to be found"):
-        wanted: dict[str, dict[str, Json]] = {name: {} for claim in document.claims for name in topics_of(claim.atoms)}
-        for each in (each for claim in document.claims for each in fields_of(claim.atoms)):
+        wanted: dict[str, dict[str, Json]] = {
+            name: {} for claim in document.claims for name in topics_of([*claim.atoms, *claim.keys])
+        }
+        for each in (each for claim in document.claims for each in fields_of([*claim.atoms, *claim.keys])):
             wanted[each["topic"]][json.dumps(each["path"])] = each
     with covered("rosbags cannot read it"), ExitStack() as stack:
         found = read_bag(open_bag([path], document, stack), document, wanted)
@@ -806,6 +833,12 @@ class Values:
     def __init__(self, instants: Instants) -> None:
         self.instants = instants
         self.kept: dict[str, Any] = {}
+        self.taken: dict[int, Array] = {}
+
+    def take(self, taken: dict[int, Array]) -> None:
+        """From now on, values at the openings of scopes are taken at these instants."""
+        self.taken = taken
+        self.kept = {key: value for key, value in self.kept.items() if '"opening"' not in key}
 
     def once(self, kind: str, x: Json, make: Callable[[], Any]) -> Any:
         """What is made once of an expression."""
@@ -875,6 +908,8 @@ class Values:
                 return np.full(count, float(text))
             case {"element": array} if elements is not None:
                 return elements.of(array)
+            case {"opening": of, "scope": number}:
+                return self.number(of)[self.taken[number]]
             case {"predicate": predicate}:
                 return self.predicate(predicate, elements)
             case {"count": predicate}:
@@ -1111,9 +1146,9 @@ class Run:
     news: int
 
 
-def values_of(recorded: Recording, topics: set[str], rate: Fraction | None, session: int | None) -> Values:
-    """The values at the instants of some topics, made once."""
-    key = frozenset(topics), session
+def values_of(recorded: Recording, topics: set[str], rate: Fraction | None, session: int | None, alone: str) -> Values:
+    """The values at the instants of some topics, made once, or once for a property alone."""
+    key = frozenset(topics), session, alone
     if key not in recorded.kept:
         recorded.kept[key] = Values(Instants(recorded, topics, rate, session))
     found: Values = recorded.kept[key]
@@ -1125,24 +1160,72 @@ def run_of(claim: Part, recorded: Recording, head: Part, first: int, *, apart: b
     with covered("its atoms cannot be computed"):
         atoms, rate = claim.atoms, Fraction(head.one("rate")) if head.one("rate") else None
         begins = not is_waited_for(atoms) and (apart or rate is not None)
-        values = values_of(recorded, topics_of(atoms), rate, first if begins else None)
+        scopes = [Scope(text) for text in claim.said.get("scope", [])]
+        alone = claim.one("property") if scopes else ""
+        values = values_of(recorded, topics_of(atoms), rate, first if begins else None, alone)
         instants, count = values.instants, values.instants.count
-        letters, begun, valid = np.zeros(count, np.int64), np.ones(count, bool), np.ones(count, bool)
-        stepped = np.full(count, rate is not None)
+        begun, stepped = np.ones(count, bool), np.full(count, rate is not None)
         stepped[:1] |= begins
         news, messages = 0, {}
+        after = 0 if recorded.sliced is None else int(instants.places[recorded.sliced][0])
+        steps: Array = None
         with np.errstate(all="ignore"):
             for n, atom in enumerate(atoms):
-                letters |= values.predicate(atom).astype(np.int64) << n
                 begun &= values.known(atom)
-                valid &= ~values.invalid(atom)
                 stepped |= values.fresh(atom)
                 of = atom["left"] if atom["op"] == "true" and isinstance(atom["left"], dict) else {}
                 news |= ("new" in of or "message" in of) << n
                 if "message" in of:
                     messages[1 << n] = of["message"]
-        steps = np.flatnonzero(stepped & begun & valid)
-        return with_messages(Run(instants.times[steps], letters[steps], first, news), steps, instants, messages)
+            for _ in range(MOST_ROUNDS):
+                before = np.zeros(0, np.int64) if steps is None else steps
+                values.take({scope.number: scope.taken(before, count) for scope in scopes})
+                valid = ~np.logical_or.reduce([np.zeros(count, bool), *map(values.invalid, atoms)])
+                steps = after + np.flatnonzero((stepped & begun & valid)[after:])
+                if not scopes or np.array_equal(steps, before):
+                    break
+            else:
+                raise NotCovered("which steps there are depends on values at openings")
+            letters = np.zeros(len(steps), np.int64)
+            for n, atom in enumerate(atoms):
+                letters |= values.predicate(atom)[steps].astype(np.int64) << n
+            seen = int(instants.times[steps].searchsorted(claim.time("until") or 0, "right"))
+            for n, scope in enumerate(scopes, len(atoms)):
+                if not scope.is_canonical(seen):
+                    raise Refused(f"from which steps on scope {scope.number} is open is not written as it should be")
+                letters |= scope.open(len(steps)).astype(np.int64) << n
+        return with_messages(Run(instants.times[steps], letters, first, news), steps, instants, messages)
+
+
+class Scope:
+    """A scope of a property: its number, and from which steps up to which it is said to be open."""
+
+    def __init__(self, text: str) -> None:
+        head, *spans = text.split(" ")
+        self.text, self.number = text, number(head)
+        pairs = [span.partition("-") for span in spans]
+        self.spans = [(number(first), number(end) if end else None) for first, _, end in pairs]
+
+    def open(self, count: int) -> Array:
+        """At which steps it is open."""
+        found = np.zeros(count, bool)
+        for first, end in self.spans:
+            found[first:end] = True
+        return found
+
+    def taken(self, steps: Array, count: int) -> Array:
+        """For each instant, at which one the value at the opening was taken: at itself unless it was open before."""
+        before = np.zeros(count, bool)
+        if len(steps):
+            last = steps.searchsorted(np.arange(count)) - 1
+            before = (last >= 0) & self.open(len(steps))[last]
+        return np.maximum.accumulate(np.where(before, 0, np.arange(count)))
+
+    def is_canonical(self, count: int) -> bool:
+        """Whether of so many steps it is said in no more words than it has to be."""
+        turns = np.flatnonzero(np.diff(self.open(count).astype(np.int8), prepend=0)).tolist()
+        spans = [f" {a}-{b}" for a, b in itertools.zip_longest(turns[::2], turns[1::2], fillvalue="")]
+        return self.text == "".join([str(self.number), *spans])
 
 
 def with_messages(run: Run, steps: Array, instants: Instants, messages: dict[int, list[str]]) -> Run:
@@ -1262,8 +1345,41 @@ def end_of(document: Document, recorded: Recording, first: int, last: int) -> in
     return min([last, *(int(run.times[0]) + timeout for run in runs if len(run.times))])
 
 
+def slices_of(claim: Part, recorded: Recording) -> dict[str, Recording]:
+    """The slices of all ids, in the order of their first messages: of the messages on the topic of the key, theirs."""
+    [key] = claim.keys
+    topic, path = recorded.topics[key["topic"]], json.dumps(key["path"])
+    own = {json.dumps(each["path"]) for each in fields_of(claim.atoms) if ["own"] in each["path"]}
+    found: dict[str, list[tuple[int, int]]] = {}
+    for n, ids in enumerate(topic.values[path]):
+        is_array = isinstance(ids, (list, np.ndarray))
+        count = min([len(ids), *(len(topic.values[each][n]) for each in own)]) if is_array else ids is not None
+        for at in range(count):
+            if (one := id_of(ids[at] if is_array else ids)) is not None:
+                found.setdefault(json.dumps(one), []).append((n, at))
+    return {one: of_slice(recorded, key["topic"], places, own) for one, places in found.items()}
+
+
+def of_slice(recorded: Recording, name: str, places: list[tuple[int, int]], own: set[str]) -> Recording:
+    """What a slice has of a recording: at these places the messages on a topic, each with its element of arrays."""
+    topic, numbers = recorded.topics[name], [n for n, _ in places]
+    values = {path: [of[n][at] if path in own else of[n] for n, at in places] for path, of in topic.values.items()}
+    topics = recorded.topics | {name: Topic(topic.times[numbers], topic.places[numbers], values)}
+    return Recording(recorded.first, recorded.last, topics, name)
+
+
+def id_of(value: Any) -> Any:
+    """A value as an id: whole numbers are integers, and NaN is none."""
+    value = value.item() if isinstance(value, np.generic) else value
+    if isinstance(value, float) and value.is_integer():
+        return int(value)
+    return None if value != value else value
+
+
 def check_claim(claim: Part, recorded: Recording, head: Part, first: int, ends: int) -> Run:
     """The run that is as claimed, which ends at `ends` at the latest; raises Refused if there is none."""
+    if claim.keys:
+        return check_slices(claim, recorded, head, first, ends)
     verdict, _, decided = claim.one("verdict").partition(" ")
     until = number(claim.one("until"))
     is_decided = verdict in ("violated", "satisfied")
@@ -1281,6 +1397,33 @@ def check_claim(claim: Part, recorded: Recording, head: Part, first: int, ends: 
         if is_waited_for(claim.atoms):
             break
     raise Refused(problem)
+
+
+def check_slices(claim: Part, recorded: Recording, head: Part, first: int, ends: int) -> Run:
+    """The run of each id is as claimed; all of them together, with no letters of their own."""
+    if "rate" in head.said or "timeout" in head.said:
+        raise NotCovered("ticks or a timeout, for each id")
+    with covered("its ids cannot be computed"):
+        found = slices_of(claim, recorded)
+    if [part.one("slice") for part in claim.slices] != list(found):
+        raise Refused(f"the ids are {', '.join(found)}"[:200])
+    runs = []
+    for part, of in zip(claim.slices, found.values(), strict=True):
+        alone = Part({**claim.said, "key": [], **part.said}, [], part.lines)
+        try:
+            runs.append(check_claim(alone, of, head, first, ends))
+        except Refused as error:
+            raise Refused(f"slice {part.one('slice')}: {error}") from None
+        part.found = alone.found
+    if claim.lines or claim.one("until") != (claim.one("verdict").partition(" ")[2]):
+        raise Refused("it has letters of its own")
+    if claim.time("until") != ends and not claim.one("verdict").startswith("violated "):
+        raise Refused(f"the run ends at {ends}")
+    claim.found = tuple(
+        np.concatenate([np.zeros(0, np.int64), *(part.found[n] for part in claim.slices)]) for n in (0, 1)
+    )
+    times = np.concatenate([np.zeros(0, np.int64), *(run.times for run in runs)])
+    return Run(times, times, first, 0)
 
 
 def problem_with(claim: Part, run: Run, times: Array, letters: Array) -> str:
@@ -1309,9 +1452,10 @@ def plural(count: int, what: str) -> str:
 
 def filled(document: Document) -> Iterator[str]:
     """The document with the lines that were computed in place of their digests."""
-    body, claims, current = hashlib.sha256(), iter(document.claims), document.head
+    parts = iter([part for claim in document.claims for part in (claim, *claim.slices)])
+    body, current = hashlib.sha256(), document.head
     for row in document.rows:
-        current = next(claims) if row.startswith("property ") else current
+        current = next(parts) if row.startswith(("property ", "slice ")) else current
         has_lines = current.found is not None and row.startswith("letters ")
         for text in text_of(*current.found) if has_lines and current.found else [f"{row}\n"]:
             body.update(text.encode())
