@@ -98,11 +98,11 @@ def test_every_claim_is_shown_by_all_three_checks(drive: Made) -> None:
     assert lines[1:9] == [
         "slow: violated from 1700000003 s on",
         "  judge: the 2 lines have this verdict (evidence_of_lines)",
-        "  recorded: the letters are as stated: 3 instants, 2 lines",
+        "  recorded: the letters are as stated; instants: 3, lines: 2",
         "  specification: its text, requirement and atoms are the same",
         "react: presumably satisfied at 1700000003.5 s",
         "  judge: the 3 lines have this verdict (evidence_of_lines)",
-        "  recorded: the letters are as stated: 5 instants, 3 lines",
+        "  recorded: the letters are as stated; instants: 5, lines: 3",
         "  specification: its text, requirement and atoms are the same",
     ]
     assert lines[9] == "often: nothing is claimed: it counts how often something occurred"

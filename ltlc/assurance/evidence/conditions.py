@@ -12,7 +12,8 @@ from dataclasses import replace
 from typing import NamedTuple, assert_never
 
 from ltlc.assurance.evidence.counting import stated_count
-from ltlc.assurance.evidence.document import Data, StatedAtom, StatedCount
+from ltlc.assurance.evidence.document import Data, StatedAtom, StatedCount, StatedSignal
+from ltlc.inputs.recordings.lacks import signals_of
 from ltlc.program.excused import excused
 from ltlc.program.machine import Instead
 from ltlc.semantics import ltl
@@ -33,7 +34,7 @@ from ltlc.semantics.timed_atoms import (
 )
 from ltlc.specification import expressions as e
 from ltlc.specification.specification import Instances, PropertySpecification, Slicing, fields, topics_of
-from ltlc.specification.wire import double_or_integer
+from ltlc.specification.wire import PRIMITIVES, double_or_integer
 
 Json = object
 """What JSON can say."""
@@ -133,6 +134,22 @@ def stated_counts(of: PropertySpecification) -> tuple[StatedCount, ...]:
     return tuple(stated_count(each, numbers) for each in of.counts())
 
 
+def stated_signals(properties: Iterable[PropertySpecification]) -> tuple[StatedSignal, ...]:
+    """What a column of a table may be: fields, and what the author has named. Raises NotCoveredError."""
+    writer = _Writer({}, {})
+    read = signals_of(properties).values()
+    found = (each for each in read if not (each.is_taken or each.is_constant or " " in each.name))
+    return tuple(StatedSignal(each.name, _type(each), writer.definition(each)) for each in found)
+
+
+def _type(signal: e.Signal) -> str:
+    """The type of the values of a signal, as ROS 2 has it."""
+    one = signal.type if signal.type.element is None else signal.type.element
+    numbers = next(name for name, numbers in PRIMITIVES.items() if numbers == signal.numbers)
+    names = {e.ValueType.BOOLEAN: "bool", e.ValueType.STRING: "string"}
+    return names.get(one, numbers) + ("" if one is signal.type else "[]")
+
+
 def _before(of: PropertySpecification) -> Iterator[ltl.Formula]:
     """What `previously` is asked of."""
     atoms = (atom for part in predicates(of.property) for atom in atoms_within(part))
@@ -223,6 +240,14 @@ class _Writer:
                 return {"predicate": self._predicate(predicate, dict(conditions))}
             case _:
                 assert_never(of)
+
+    def definition(self, signal: e.Signal) -> dict[str, object]:
+        """What a signal is: a field, or an expression, whose latest value it is."""
+        if isinstance(signal.definition, e.Field):
+            return _field(signal.definition)
+        found = self.expression(signal.definition)
+        assert isinstance(found, dict), "it is computed from other signals"
+        return found
 
     def _current(self, wanted: e.Current, signal: e.Signal) -> Json:
         if (standing := self._standing.get(wanted)) is not None:

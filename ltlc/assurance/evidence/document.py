@@ -80,6 +80,14 @@ class StatedSlice:
     decided: Nanoseconds
 
 
+class StatedSignal(NamedTuple):
+    """A signal that a table may have a column of: the type of its values as ROS 2 has it, and what it is otherwise."""
+
+    name: str
+    type: str
+    definition: Data
+
+
 @dataclass(frozen=True, slots=True)
 class Head:
     """What was judged, and by what.
@@ -87,7 +95,8 @@ class Head:
     `version` is that of ltlc, with its commit. `specification` and `certificates` are digests, the former with the name
     of the file. `recordings` are all files of the recording, their names relative to the folder that it is in.
     `definitions` are the types of messages that were read, with the SHA-256 of their `definition_text`. Of the times
-    that the recording was judged at and between, None is the default; `rate` is in Hz, as Python writes it.
+    that the recording was judged at and between, None is the default; `rate` is in Hz, as Python writes it. Of a table,
+    `signals` are all that its columns may be.
     """
 
     version: str
@@ -100,6 +109,7 @@ class Head:
     is_by_header: bool = False
     since: Nanoseconds | None = None
     until: Nanoseconds | None = None
+    signals: tuple[StatedSignal, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -216,6 +226,7 @@ def _head_lines(head: Head) -> Iterator[str]:
     yield f"certificates sha256 {head.certificates}"
     yield from (f"recording {file.name} {file.bytes} sha256 {file.sha256}" for file in head.recordings)
     yield from (f"definition {type_} sha256 {sha256}" for type_, sha256 in head.definitions)
+    yield from (f"signal {name} {type_} {condition_text(definition)}" for name, type_, definition in head.signals)
     if head.rate is not None:
         yield f"rate {head.rate}"
     if head.timeout is not None:
@@ -363,12 +374,13 @@ class _Reader:
         if not recordings:
             self._need("recording", "a file of the recording")
         definitions = tuple((type_, sha256) for type_, sha256 in self._all(rf"definition (\S+) sha256 {_HEX}"))
+        signals = tuple(self._signals())
         rate, timeout = self._optional(r"rate ([0-9.e+-]+)"), self._time(f"timeout {_TIME}")
         is_by_header = self._take("stamp header") is not None
         since, until = self._time(f"from {_TIME}"), self._time(f"to {_TIME}")
         return Head(
             version, (name, of_specification), certificates, recordings, definitions,
-            rate, timeout, is_by_header, since, until,
+            rate, timeout, is_by_header, since, until, signals,
         )  # fmt: skip
 
     def _properties(self) -> Iterator[Claim | NotCovered]:
@@ -387,7 +399,7 @@ class _Reader:
         atoms = tuple(self._atoms())
         counts, scopes = tuple(self._counts()), tuple(self._scopes())
         opens = self._optional(r"instances a(0|[1-9][0-9]{0,5})")
-        key = None if (found := self._optional(r"key (\{.*\})")) is None else self._json(found)
+        key = None if (found := self._optional(r"key (\{.*\})")) is None else self._data(found)
         (session,) = self._need(f"session {_TIME}", "when the session began")
         slices = [] if key is None else [*self._slices(len(atoms) + len(scopes))]
         letters, until, verdict, decided = self._judged(len(atoms) + len(scopes))
@@ -396,18 +408,22 @@ class _Reader:
             verifies, counts, scopes, None if opens is None else int(opens), key, tuple(slices),
         )  # fmt: skip
 
+    def _signals(self) -> Iterator[StatedSignal]:
+        for name, type_, definition in self._all(r"signal (\S+) (\S+) (\{.*\})"):
+            yield StatedSignal(name, type_, self._data(definition))
+
     def _atoms(self) -> Iterator[StatedAtom]:
         for (name,) in self._all(f"atom {_SOME}"):
             (condition,) = self._need(r"is (\{.*\})", "what the atom is")
-            yield StatedAtom(name, self._json(condition))
+            yield StatedAtom(name, self._data(condition))
 
-    def _json(self, text: str) -> Data:
-        """What the line that was taken last says as JSON."""
+    def _data(self, text: str) -> Data:
+        """What the last line says in JSON."""
         try:
             found: Data = json.loads(text)
         except (ValueError, RecursionError):
             self.at -= 1
-            raise _RefusedError("what the atom is, is not JSON") from None
+            raise _RefusedError("this is not JSON") from None
         return found
 
     def _slices(self, atoms: int) -> Iterator[StatedSlice]:

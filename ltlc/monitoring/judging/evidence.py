@@ -14,10 +14,11 @@ from ltlc.assurance.evidence.conditions import (
     stated_atoms,
     stated_counts,
     stated_key,
+    stated_signals,
     whole_run,
 )
 from ltlc.assurance.evidence.definitions import digests
-from ltlc.assurance.evidence.document import Claim, Document, Head, NotCovered, StatedAtom, digest
+from ltlc.assurance.evidence.document import Claim, Document, Head, NotCovered, StatedAtom, StatedSignal, digest
 from ltlc.base.codes import diagnostic
 from ltlc.base.diagnostics import Diagnostic
 from ltlc.base.limits import Budget
@@ -29,6 +30,7 @@ from ltlc.inputs.recordings import Recording
 from ltlc.inputs.recordings.bags import BagRecording
 from ltlc.inputs.recordings.bags.plan import absolute
 from ltlc.inputs.recordings.digests import files_of
+from ltlc.inputs.recordings.lacks import signals_of
 from ltlc.inputs.recordings.reading import ReadOptions, Stamp
 from ltlc.monitoring.judging.part import Part
 from ltlc.monitoring.judging.whole_runs import WholeRuns
@@ -50,6 +52,7 @@ class Kept(NamedTuple):
 class Evidence:
     """What is said of every recording that is judged by `properties`: by their labels, their atoms or why not.
 
+    `signals` are what the columns of a table may be, or why that cannot be said.
     `version` is that of ltlc. `specification` is the name of the file and its digest, `certificates` a digest.
     """
 
@@ -58,6 +61,7 @@ class Evidence:
     certificates: str
     properties: Sequence[PropertySpecification]
     stated: Mapping[str, tuple[StatedAtom, ...] | str]
+    signals: tuple[StatedSignal, ...] | str
     rate: float | None
     timeout: Nanoseconds | None
 
@@ -123,9 +127,18 @@ def evidence_by(compiled: Sequence[Compiled], specification: Specification, budg
         digest(text),
         tuple(each.specification for each in compiled),
         stated,
+        _signals(tuple(each.specification for each in compiled)),
         specification.rate,
         specification.timeout,
     )
+
+
+def _signals(properties: Sequence[PropertySpecification]) -> tuple[StatedSignal, ...] | str:
+    """The signals that columns of a table may be, or why evidence of tables cannot say which."""
+    try:
+        return stated_signals(properties)
+    except NotCoveredError as error:
+        return str(error)
 
 
 class Digests:
@@ -165,6 +178,7 @@ class _Judged:
             self.reading.stamp is Stamp.HEADER,
             self.part.since,
             self.part.until,
+            () if isinstance(self.recording, BagRecording) or isinstance(evidence.signals, str) else evidence.signals,
         )
         return Document(head, properties)
 
@@ -183,13 +197,11 @@ class _Judged:
         stated = evidence.stated[of.label]
         if isinstance(stated, str):
             return NotCovered(of.label, stated)
-        if not isinstance(self.recording, BagRecording):
-            return NotCovered(of.label, "the recording is a table")
         assert isinstance(track, JudgedTrack)
         began = self.session.began
         if began is None or self.session.time is None:
             return NotCovered(of.label, "the recording has no messages")
-        if unread := self._unread(of):
+        if unread := self._unread(evidence, of):
             return NotCovered(of.label, unread)
         if track.slices is not None and track.slices.left_out:
             return NotCovered(of.label, "messages were ignored because of its limit")
@@ -235,11 +247,17 @@ class _Judged:
         slices = self.kept.whole.slices(claim.label, end)
         return NotCovered(claim.label, slices) if isinstance(slices, str) else replace(claim, slices=slices)
 
-    def _unread(self, of: PropertySpecification) -> str:
-        """Why something that a property reads is not read of a topic that the recording has; empty if all is."""
-        assert isinstance(self.recording, BagRecording)
+    def _unread(self, evidence: Evidence, of: PropertySpecification) -> str:
+        """Why evidence cannot say what a property reads of the recording; empty if it can."""
+        columns = self.recording.columns
+        if not isinstance(self.recording, BagRecording):
+            if isinstance(evidence.signals, str):
+                return f"the recording is a table: {evidence.signals}"
+            stated = {each.name for each in evidence.signals}
+            other = next((name for name in signals_of([of]) if name in columns and name not in stated), None)
+            return "" if other is None else f"the table has a column `{other}`, which is no field and no named signal"
         topics = {absolute(name) for name in self.recording.topics}
         for signal, field in (pair for each in of.signals() for pair in fields(each)):
-            if field.topic in topics and signal.name not in self.recording.columns:
+            if field.topic in topics and signal.name not in columns:
                 return f"`{signal.name}` is not read: {self.recording.absence(signal.name)}"
         return ""
