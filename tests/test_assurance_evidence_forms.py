@@ -404,6 +404,22 @@ def test_what_is_not_covered_of_slices_is_said(text: str, reason: str, tmp_path:
     assert reason in found.reason
 
 
+@pytest.mark.parametrize("setting", ["_rate_ = 5\n", "_timeout_ = 5\n"])
+def test_ids_at_ticks_or_up_to_a_timeout_are_not_covered(setting: str, tmp_path: Path) -> None:
+    bag = bag_of(tmp_path, rows("/x", 0.0), ids(7))
+    [found] = evidence_of(f"{setting}{FOLLOWED}", bag).properties
+    assert isinstance(found, NotCovered)
+    assert "for each id" in found.reason
+
+
+def test_ids_in_a_table_are_not_covered(tmp_path: Path) -> None:
+    table = tmp_path / "run.csv"
+    table.write_text("time,i,x\n0,1,0\n1,1,3\n")
+    [found] = evidence_of(FOLLOWED, table).properties
+    assert isinstance(found, NotCovered)
+    assert "over a table" in found.reason
+
+
 def test_more_ids_than_evidence_has_room_for_are_not_covered(tmp_path: Path) -> None:
     bag = bag_of(tmp_path, rows("/x", 0.0), ids(*range(101)))
     [found] = evidence_of(FOLLOWED, bag).properties

@@ -240,10 +240,13 @@ class _Judged:
 
     def _with_slices(self, claim: Claim, evidence: Evidence, end: Nanoseconds) -> Claim | NotCovered:
         assert self.kept.whole is not None
-        if evidence.rate is not None:
-            return NotCovered(claim.label, "it is judged for each id, at ticks")
-        if evidence.timeout is not None:
-            return NotCovered(claim.label, "it is judged for each id, up to a timeout")
+        whys = {
+            "at ticks": evidence.rate is not None,
+            "up to a timeout": evidence.timeout is not None,
+            "over a table": not isinstance(self.recording, BagRecording),
+        }
+        for why in (why for why, is_so in whys.items() if is_so):
+            return NotCovered(claim.label, f"it is judged for each id, {why}")
         slices = self.kept.whole.slices(claim.label, end)
         return NotCovered(claim.label, slices) if isinstance(slices, str) else replace(claim, slices=slices)
 
