@@ -22,7 +22,8 @@ from rosbags.typesys import Stores, get_typestore  # noqa: TID251
 from ltlc.assurance.evidence import recorded
 from ltlc.assurance.evidence.certified import certificates
 from ltlc.assurance.evidence.checked import checked
-from ltlc.assurance.evidence.document import Document, parsed, printed
+from ltlc.assurance.evidence.document import Document, printed
+from ltlc.assurance.evidence.parsing import parsed
 from ltlc.assurance.evidence.reader import Read
 from ltlc.automata import Budget
 from ltlc.base.source import Source

@@ -28,17 +28,8 @@ from rosbags.typesys import Stores, get_typestore  # noqa: TID251
 
 from ltlc.assurance.evidence import recorded
 from ltlc.assurance.evidence.definitions import definition_text
-from ltlc.assurance.evidence.document import (
-    Claim,
-    Document,
-    Line,
-    NotCovered,
-    StatedAtom,
-    Summed,
-    digest,
-    parsed,
-    printed,
-)
+from ltlc.assurance.evidence.document import Claim, Document, Line, NotCovered, StatedAtom, Summed, digest, printed
+from ltlc.assurance.evidence.parsing import parsed
 from ltlc.assurance.evidence.seam import difference, differences
 from ltlc.cli import main
 from ltlc.inputs.messages.definitions import MessageTypes, shipped

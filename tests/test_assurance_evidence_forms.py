@@ -33,10 +33,9 @@ from ltlc.assurance.evidence.document import (
     StatedScope,
     StatedSlice,
     Summed,
-    UnreadableEvidence,
-    parsed,
     printed,
 )
+from ltlc.assurance.evidence.parsing import UnreadableEvidence, parsed
 from ltlc.semantics.verdicts import Verdict
 
 SECOND = 10**9

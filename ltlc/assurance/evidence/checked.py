@@ -66,7 +66,9 @@ def _judged_slices(claim: Claim, filled: Claim, entry: Entry) -> Check:
         found = _judged(claim.of_slice(each), filled.of_slice(computed), entry)
         if found.refusal is not None:
             return found._replace(refusal=f"slice {each.id}: {found.refusal}")
-    shown = f"each of the {len(claim.slices)} slices has its verdict (evidence_of_lines), and this is that of the worst"
+    shown = (
+        f"each of the {len(claim.slices)} slices has its verdict (evidence_of_lines); that of the whole is the worst"
+    )
     return Check("judge", JUDGE, refusal_of_all(claim), shown=shown)
 
 

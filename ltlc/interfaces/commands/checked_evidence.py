@@ -7,8 +7,9 @@ from pathlib import Path
 
 from ltlc.assurance.afresh.files import UnusableError
 from ltlc.assurance.evidence.checked import checked
-from ltlc.assurance.evidence.document import Claim, Document, NotCovered, UnreadableEvidence, parsed_all
+from ltlc.assurance.evidence.document import Claim, Document, NotCovered
 from ltlc.assurance.evidence.outcomes import Check, CheckedClaim
+from ltlc.assurance.evidence.parsing import UnreadableEvidence, parsed_all
 from ltlc.assurance.evidence.reader import NotReadError, Read, read, recordings_of
 from ltlc.assurance.evidence.seam import differences
 from ltlc.assurance.evidence.words import settings_in_words
