@@ -29,6 +29,7 @@ from ltlc.semantics.alphabet import Alphabet, Group
 from ltlc.semantics.certificate_reader import UnreadableError, parse
 from ltlc.semantics.certificate_text import Entry, to_text
 from ltlc.semantics.encodings import EPISODE, encode
+from ltlc.semantics.intervals import without_intervals
 from ltlc.semantics.ltl import And, Formula, Not
 from ltlc.semantics.properties import After
 from ltlc.semantics.timed_atoms import News, Occurred, TimedAtom, atoms_within, news_of
@@ -58,7 +59,9 @@ def drawn(seed: int) -> Entry:
     """
     property_ = Draw(seed).property(depth=1 + seed % 2)
     if seed % 5 == 4:
-        property_ = After(MARK, Draw(seed).property(depth=0))
+        draw = Draw(seed)
+        some = (draw.property(depth=0) for _ in range(100))
+        property_ = After(MARK, next(each for each in some if without_intervals(each) == each))
     atoms = ordinary_atoms(encode(property_, EPISODE))
     chance = random.Random(seed)
     letters = [*letters_over(atoms)]
@@ -76,11 +79,6 @@ def atoms_of(of: Entry) -> tuple[str, ...]:
         if isinstance(atom, TimedAtom)
     }
     return tuple(name for name in of.certificate.monitor.atoms if defined.get(name, True))
-
-
-def opens(of: Entry) -> int | None:
-    """The atom that opens instances, if the certificate is of these."""
-    return atoms_of(of).index(MARK.name) if MARK.name in atoms_of(of) else None
 
 
 def drawn_counts(of: Entry, chance: random.Random) -> tuple[Occurred, ...]:
@@ -109,7 +107,16 @@ def claim(
     stated = tuple(StatedAtom(name, {}) for name in names)
     counted = tuple(stated_count(count, {name: n for n, name in enumerate(names)}) for count in counts)
     return Claim(
-        of.label, "drawn", stated, session, tuple(lines), until, verdict, until, counts=counted, opens=opens(of)
+        of.label,
+        "drawn",
+        stated,
+        session,
+        tuple(lines),
+        until,
+        verdict,
+        until,
+        counts=counted,
+        opens=names.index(MARK.name) if MARK.name in names else None,
     )
 
 

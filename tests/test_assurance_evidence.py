@@ -227,7 +227,8 @@ def test_a_timeout_ends_the_run_after_the_first_step_of_a_property(rate: str, se
         ("after age(x) > 1 s, always x < @{x, opening} + 1", "an age opens or closes a scope"),
         ("after_until x < 2, new y, x < @{x, opening} + 1", "between two steps"),
         ("each g of i: always age(i) <= 1 s or g > 1", "ages, for each id"),
-        ("each new x: after y > 1, always x < @{x, opening}", "from each message on"),
+        ("each new x: after y > 1, always x < @{x, opening}", "values at openings, from each message on"),
+        ("each new x: eventually y > 1 within [1 s, 2 s]", "an interval, from each message on"),
         ("always (new x implies not previously new x)", "a nanosecond ago"),
     ],
 )

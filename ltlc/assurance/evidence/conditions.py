@@ -58,6 +58,8 @@ def stated_atoms(of: PropertySpecification, encoding: Encoding = EPISODE) -> tup
     elif of.slicing is not None:
         if of.openings():
             raise NotCoveredError("it reads values at openings, from each message on")
+        if without_intervals(of.property) != of.property:
+            raise NotCoveredError("it has an interval, from each message on")
         of = whole_run(of, of.slicing)
     scopes = numbered_scopes(of)
     if any(isinstance(atom, Age) for clock in scopes for part in clock_operands(clock) for atom in atoms_within(part)):
