@@ -113,7 +113,7 @@ def test_the_verdict_of_a_run_is_that_of_its_worst_instance_and_no_other() -> No
     verdicts: Counter[Verdict] = Counter()
     for seed in (seed for seed in range(4, 250, 5) if seed % 3):  # with all letters
         of, draw = drawn(seed), Draw(seed)
-        for _ in range(4):
+        for _ in range(15):
             run = draw.run((*SIGNALS, MARK.name))
             instances = instances_of(run)
             claims = [true_claim(of, each) for each in instances]
