@@ -1,9 +1,10 @@
-"""Nanoseconds a step of emitted C beside Copilot's C for the same formulas in the same run; bytes on a Cortex-M4.
+"""Nanoseconds a step of emitted C and Rust beside Copilot's C for the same formulas in one run; bytes on a Cortex-M4.
 
     python -m benchmarks.c [--compiler CC] [--samples N] [--rounds N]
 
 Five properties, each in a file of its own, but for W5, which is twenty in one file, on 35 atoms and 6 signals. All get
-the same samples from arrays, one call a sample, compiled with -O2 and without optimisation across files. A figure is
+the same samples from arrays, one call a sample, compiled with -O2 and without optimisation across files; Rust is a
+crate of its own, stepped by a program in Rust. A figure is
 the median over the rounds, which go around the tools in turn, and in parentheses the least. It includes the loop that
 makes the calls; `call` is that loop around an empty function. The signals are smooth, and no property is decided.
 
@@ -26,10 +27,12 @@ from tempfile import TemporaryDirectory
 
 from ltlc.automata import Budget
 from ltlc.backends.c import Files, emit
+from ltlc.backends.rust import file_of
 from ltlc.base.source import Source
-from ltlc.compiler import compile_specification
+from ltlc.compiler import Compiled, compile_specification
 from ltlc.frontend.language import load_text
 from ltlc.semantics.encodings import EPISODE
+from ltlc.specification.specification import Specification
 
 COLUMNS = 6
 DECLARATIONS = "".join(f"decl c{n} /c{n} std_msgs/Float64.data\n" for n in range(COLUMNS))
@@ -135,11 +138,12 @@ def main() -> None:
         tools: dict[str, Callable[[Path, str, str], Path | str]] = {
             "call": call_tool,
             "ltlc": ltlc_tool,
+            "ltlc, Rust": rust_tool,
             "copilot": copilot_tool,
         }
         built = {
-            (tool, case): build(Path(folder) / f"{tool}_{case}", case, options.compiler)
-            for tool, build in tools.items()
+            (tool, case): build(Path(folder) / f"{number}_{case}", case, options.compiler)
+            for number, (tool, build) in enumerate(tools.items())
             for case in CASES
         }
         figures: dict[tuple[str, str], list[float]] = {key: [] for key in built}
@@ -158,13 +162,17 @@ def main() -> None:
     sizes()
 
 
-def files_of(case: str) -> Files:
+def compiled_case(case: str) -> tuple[Sequence[Compiled], Specification]:
     text = DECLARATIONS + "\n".join(f"p{n}: {p.ltlc}" for n, p in enumerate(CASES[case]))
     specification, problems = load_text(Source(f"{case.lower()}.txt", text))
     assert specification is not None, problems
     compiled, refused = compile_specification(specification, EPISODE, Budget(60.0, 1024))
     assert not refused
-    return emit(compiled, specification, case.lower())
+    return compiled, specification
+
+
+def files_of(case: str) -> Files:
+    return emit(*compiled_case(case), case.lower())
 
 
 def ltlc_tool(folder: Path, case: str, compiler: str) -> Path:
@@ -182,6 +190,49 @@ def ltlc_tool(folder: Path, case: str, compiler: str) -> Path:
     before = f"static {name}_monitors m; {name}_samples s = {{0}}; {name}_init(&m); int64_t t = 0; {flags}"
     text = program(f'#include "{files.stem}.h"\n', before, f"{sets} t += 10000000; {name}_step(&m, t, &s);", checks)
     return compiled(folder, {"main.c": text}, [f"{files.stem}.c"], compiler)
+
+
+RUST = """
+use monitor::{{Monitors, Property, Samples, Verdict}};
+extern "C" {{ fn clock_gettime(clock: i32, time: *mut [i64; 2]) -> i32; }}
+fn now() -> f64 {{
+    let mut time = [0i64; 2];
+    unsafe {{ clock_gettime(2, &mut time) }}; // CLOCK_PROCESS_CPUTIME_ID of Linux
+    time[0] as f64 * 1e9 + time[1] as f64
+}}
+fn main() {{
+    let count: usize = std::env::args().nth(1).unwrap().parse().unwrap();
+    let columns: Vec<Vec<f64>> = (0..{columns}).map(|c| (0..count).map(|i| {{
+        let (middle, wide) = if c % 2 == 1 {{ (0.95, 0.95) }} else {{ (2.5, 2.0) }};
+        middle + wide * (i as f64 / 50.0 - 0.1 * c as f64).cos()
+    }}).collect()).collect();
+    let (mut monitors, mut time) = (Monitors::new(), 0i64);
+    for round in 0..3 {{
+        let start = now();
+        for i in 0..count {{
+            time += 10000000;
+            monitors.step(time, &Samples {{ {sets} }});
+        }}
+        if round == 2 {{
+            println!("{{:.3}}", (now() - start) / count as f64);
+        }}
+    }}
+    let decided = [Verdict::Violated, Verdict::Satisfied];
+    assert!(Property::ALL.iter().all(|each| !decided.contains(&monitors.judgement(*each).verdict)));
+}}
+"""
+
+
+def rust_tool(folder: Path, case: str, _: str) -> Path | str:
+    """The same in Rust."""
+    if shutil.which("rustc") is None:
+        return "Rust, for there is no rustc"
+    file = file_of(*compiled_case(case))
+    sets = ", ".join(f"{name}: Some(columns[{name[1:]}][i])" for name in file.c.samples.fields.values())
+    write(folder, {"monitor.rs": file.text, "main.rs": RUST.format(columns=COLUMNS, sets=sets)})
+    for more in (["--crate-type=rlib", "monitor.rs"], ["-L.", "--extern=monitor", "main.rs", "-o", "program"]):
+        subprocess.run(["rustc", "--edition=2021", "-Copt-level=2", *more], cwd=folder, check=True)
+    return folder / "program"
 
 
 def call_tool(folder: Path, case: str, compiler: str) -> Path:

@@ -4,12 +4,14 @@ A change counts if it alters a verdict of some run. In time that is decided nano
 bounds of a few; of random machines over random conditions, on random runs. COUNT changes that count are tried of each.
 With `c` before COUNT, changes of C, compiled and run to see which alter a verdict.
 With `whole` before COUNT, COUNT changes all over each emitted file of the examples, compared as whole files.
+With `rust` before COUNT, COUNT changes all over Rust with `_rate_`, `each` and `each new`, read back.
 With `time`, instead: what reading back takes of a build, of the examples and of the files given.
 """
 
 from __future__ import annotations
 
 import random
+import subprocess
 import sys
 import time
 from collections import Counter
@@ -17,6 +19,7 @@ from collections.abc import Callable, Iterator, Sequence
 from itertools import islice
 from pathlib import Path
 from statistics import median
+from tempfile import TemporaryDirectory
 from typing import Any
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
@@ -39,16 +42,22 @@ from ltlc.assurance.c_programs import c_programs
 from ltlc.assurance.gate import Subject, judge
 from ltlc.assurance.messages import Messages
 from ltlc.assurance.programs import programs
+from ltlc.assurance.reading.c.files import WrittenInC
 from ltlc.assurance.reading.c.files import written as written_in_c
 from ltlc.assurance.reading.c.lexing import tokens
 from ltlc.assurance.reading.c.parsing import parsed
 from ltlc.assurance.reading.files import written
 from ltlc.assurance.reading.outcomes import Difference, ReadBack, Written
+from ltlc.assurance.reading.rust import require_same
+from ltlc.assurance.reading.rust import written as written_in_rust
+from ltlc.assurance.reading.rust_text import tokens as rust_tokens
+from ltlc.assurance.reading.trees import NotUnderstoodError
 from ltlc.automata import Budget
 from ltlc.backends import emit
 from ltlc.backends.c import Files
 from ltlc.backends.c import emit as emit_c
 from ltlc.backends.python import standalone_classes
+from ltlc.backends.rust import file_of
 from ltlc.backends.spelling import NotInTargetError
 from ltlc.base.source import Source
 from ltlc.compiler import Compiled, compile_specification
@@ -205,6 +214,55 @@ def whole(paths: Sequence[Path], count: int, chance: random.Random) -> None:
         print(f"{target}: {number} {outcome}")
 
 
+HEAD = """
+decl id /track sensor_msgs/JoyFeedback.id
+decl kind /track sensor_msgs/JoyFeedback.type
+decl goal /goal std_msgs/Float64.data
+decl done /done std_msgs/Float64.data
+"""
+RUST = (
+    f"_rate_ = 30\n{HEAD}always (kind == 1 implies eventually goal > @{{goal, -1}} within 1 s)\nalways age(done) < 1 s",
+    f"{HEAD}each g of id limit 9: always (kind == 1 implies eventually (kind == 2 or goal > 1) within 1 s)",
+    f"{HEAD}each new goal limit 9: eventually (new done and done > @{{goal, opening}}) within 1 s",
+)
+
+
+def of_rust(count: int, chance: random.Random) -> None:
+    """Change one token after the other in files of Rust; what is read back has to be the same but for parentheses."""
+    outcomes = Counter[str]()
+    for text in RUST:
+        loaded, _ = load_text(Source("props.txt", text))
+        assert loaded is not None
+        compiled, _ = compile_specification(loaded, EPISODE, Budget(60.0, 1024))
+        file = file_of(compiled, loaded)
+        (part, *_) = written_in_rust(file.text, file.c.header, file.c.source, compiled, loaded.rate)
+        assert isinstance(part, WrittenInC)
+        plain = _plain_rust(file.text)
+        for mutant in _some(emitted_mutants.rust_mutants(file.text), count, chance):
+            try:
+                require_same(mutant, part.definitions, [each.specification.label for each in compiled])
+            except NotUnderstoodError:
+                outcomes["refused"] += 1
+            else:
+                is_same = _plain_rust(mutant) == plain
+                is_refused = not is_same and not _compiles(mutant)
+                outcomes["accepted, but no Rust" if is_refused else _outcome(True, is_same)] += 1
+    for outcome, number in sorted(outcomes.items()):
+        print(f"rust: {number} {outcome}")
+
+
+def _compiles(text: str) -> bool:
+    """Whether a compiler takes it."""
+    with TemporaryDirectory() as folder:
+        command = ["rustc", "--edition=2021", "--crate-type=lib", "--emit=metadata", "-"]
+        done = subprocess.run(command, cwd=folder, input=text, capture_output=True, text=True, check=False)
+    return done.returncode == 0
+
+
+def _plain_rust(text: str) -> list[str]:
+    return [token.text for token in rust_tokens(text) if token.text not in "()"]
+
+
 def _some(changes: Iterator[str], count: int, chance: random.Random) -> list[str]:
     """COUNT of many changes, wherever they are; each is a whole file, so that not all are kept."""
     found: list[str] = []
@@ -273,6 +331,8 @@ if __name__ == "__main__":
     examples = sorted((Path(__file__).parents[1] / "examples").glob("**/*.txt"))
     if sys.argv[1:2] == ["time"]:
         shares([Path(name) for name in sys.argv[2:]] or examples)
+    elif sys.argv[1:2] == ["rust"]:
+        of_rust(int(sys.argv[2]) if sys.argv[2:] else 100, random.Random(0))
     elif sys.argv[1:2] == ["whole"]:
         whole(examples, int(sys.argv[2]) if sys.argv[2:] else 100, random.Random(0))
     else:

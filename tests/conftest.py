@@ -36,6 +36,7 @@ LONGEST = (
     "test_openings_in_time.py",
     "test_columns.py",
     "test_backends_rust.py",
+    "test_each_rust.py",
     "test_analysis_findings.py",
     "test_analysis_robots.py",
     "test_assurance_reading_rust.py",

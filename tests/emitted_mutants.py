@@ -107,6 +107,14 @@ def c_mutants(text: str) -> Iterator[str]:
             yield text[:place] + f"(({inner}))" + text[places[close] + 1 :]
 
 
+def rust_mutants(text: str) -> Iterator[str]:
+    """The file with one token left out or changed, over and over."""
+    for found in re.finditer(r"//[^\n]*|\w+|[^\s\w]", text):
+        if not found[0].startswith("//"):
+            for other in ("", f"{found[0]} {found[0]}", _OPERATORS.get(found[0], f"{found[0]}1")):
+                yield text[: found.start()] + other + text[found.end() :]
+
+
 def regrouped(text: str) -> Iterator[str]:
     """The file with parentheses around two or more operands of each line that has several, over and over."""
     for found in re.finditer(r"(?<![\w\])])[\w.>-]+(?: (?:&&|\|\||[<>=!]=?|==|[-+*/]) [!\w.>-]+)+", text):

@@ -27,6 +27,7 @@ DECLARATIONS = (
 MORE = f"""{DECLARATIONS}decl goal /goal Float64.data
 decl id /a action_msgs/GoalStatusArray.status_list[].goal_info.goal_id
 decl status /a action_msgs/GoalStatusArray.status_list[].status
+decl spot /spot Point
 model robot: position /odom Odometry.pose.pose.position ;
 zone kitchen = [(0, 0), (4, 0), (4, 3)]
 """
@@ -39,23 +40,24 @@ zone kitchen = [(0, 0), (4, 0), (4, 3)]
             "never once new x 4 times within 10 s",
             "There is no moment at which at least 4 messages of x arrived in the last 10 s.",
         ),
+        ("always age(spot) <= 1 s", "At every moment, the last message of spot is at most 1 s old."),
         ("always not once new x 1 times", "At every moment, fewer than 1 message of x arrived so far."),
         (
             "always rate(x) >= 3 Hz over 2 s",
-            "At every moment, at least 6 messages of x arrived in the last 2 s, or at most 2 s has passed since the beginning.",
+            "At every moment, at least 6 messages of x arrived in the last 2 s, or the start was at most 2 s ago.",
         ),
-        ("never once on 3 times", "There is no moment at which it happened at least 3 times so far that on was true."),
+        ("never once on 3 times", "There is no moment at which on became true at least 3 times so far."),
         (
             "never once (new x and x > 1) 3 times within 5 s",
             "There is no moment at which (a message of x arrived and x was more than 1) at least 3 times in the last 5 s.",
         ),
         (
             "each new goal: eventually x > @{goal, opening} within 1 s",
-            "For each message of goal: at some moment in the next 1 s, x is more than goal at that message.",
+            "For each message of goal: at some moment in the next 1 s, x is more than what goal was at that message.",
         ),
         (
             "each new goal: after on, never x > @{goal, opening}",
-            "For each message of goal: once on is true: from then on, x is never more than goal when the scope opened.",
+            "For each message of goal: once on is true: from then on, x is never more than what goal was when the scope opened.",
         ),
         (
             "each g of id: never (gone id and status == 1)",
@@ -69,6 +71,29 @@ zone kitchen = [(0, 0), (4, 0), (4, 3)]
             "never count(@{x, -4:} > 1 and @{x, -4:} < 2) > 3",
             "The number of the last 5 samples of x for which it is more than 1 and it is less than 2 is never more than 3.",
         ),
+        (
+            "never once (x > 1 and on) 3 times within 10 s",
+            "There is no moment at which it happened at least 3 times in the last 10 s that x was more than 1 and on was true.",
+        ),
+        ("always all(scan > 0.1)", "At every step, for every element, scan is more than 0.1."),
+        ("never all(scan > 0.1)", "There is no step at which for every element, scan is more than 0.1."),
+        (
+            "always max(@{x, -49:}) - min(@{x, -49:}) < 0.1",
+            "At every step, (the largest of the last 50 samples of x) - (the smallest of the last 50 samples of x) is less than 0.1.",
+        ),
+        ("always mod(x, 3) < 2", "At every step, the remainder of x divided by 3 is less than 2."),
+        ("always norm(spot) < 10", "At every step, the length of spot is less than 10."),
+        (
+            "always spot =={0.5} @{spot, opening}",
+            "At every step, spot is within 0.5 of what spot was when the run began.",
+        ),
+        (
+            "after on, spot == @{spot, opening}",
+            "Once on is true for the first time: at every step from then on, spot is exactly what spot was when the scope opened.",
+        ),
+        ("always @{spot, -1} == spot", "At every step, what spot was 1 sample ago is exactly spot."),
+        ("always (new spot implies on)", "At every moment, if a message of spot arrives, then on is true."),
+        ("each new spot: eventually on", "For each message of spot: at some moment from there on, on is true."),
         ("always nearest(x, scan) < 2", "At every step, the element of scan nearest to x is less than 2."),
         ("always angle_between(x, 1) < 2", "At every step, the angle between x and 1 is less than 2."),
         ("never inside(robot.position, kitchen)", "robot is never inside kitchen."),
@@ -89,7 +114,7 @@ def test_what_only_stands_for_the_message_of_an_instance_is_not_explained() -> N
     specification, _ = load_text(Source("p", f"{MORE}each new goal: eventually x > @{{goal, opening}}"))
     assert specification is not None
     (atom,) = English(specification.properties[0]).atoms()
-    assert atom == ("x > @{goal, opening}", "x is more than goal at that message")
+    assert atom == ("x > @{goal, opening}", "x is more than what goal was at that message")
 
 
 def test_an_age_is_explained_rather_than_the_messages_from_which_it_counts() -> None:
@@ -132,9 +157,9 @@ def test_an_age_is_explained_rather_than_the_messages_from_which_it_counts() -> 
         (
             "after_until x > 1, on, always x <= @{x, opening} + 2",
             "In each episode that opens when x is more than 1 and lasts until on is true: at every step, x is at most "
-            "(x when the scope opened) + 2.",
+            "(what x was when the scope opened) + 2.",
         ),
-        ("always x <= @{x, opening}", "At every step, x is at most x when the run began."),
+        ("always x <= @{x, opening}", "At every step, x is at most what x was when the run began."),
         (
             "(always x > 1 and on) and never x > 3",
             "At every step, x is more than 1 and on is true, and x is never more than 3.",
@@ -166,12 +191,15 @@ def test_an_age_is_explained_rather_than_the_messages_from_which_it_counts() -> 
             "never any(scan < 0.3 or scan > 9)",
             "There is no step at which for some element, scan is less than 0.3 or scan is more than 9.",
         ),
-        ("always all(scan > 0.3)", "At every step, for no element, scan is at most 0.3."),
+        ("always all(scan > 0.3)", "At every step, for every element, scan is more than 0.3."),
         (
             "never count(scan[80:100] < 0.3) >= 5",
             "The number of elements for which scan[80:100] is less than 0.3 is never at least 5.",
         ),
-        ("eventually sum(scan) / len(scan) > 2", "At some step, sum(scan) / len(scan) is more than 2."),
+        (
+            "eventually sum(scan) / len(scan) > 2",
+            "At some step, (the sum of scan) / (the length of scan) is more than 2.",
+        ),
         ("never sum(scan) > 2", "The sum of scan is never more than 2."),
         ("never x >{0.5} 2", "x is never more than 2.5."),
     ],

@@ -11,7 +11,9 @@ import pytest
 from conditions_support import CONDITIONS, DECLARED
 from lowered import texts
 from stepping import from_text
-from test_backends_rust import AGED, KEPT, OPENED, PAST, SIGNALS, TIMED, fit
+from test_backends_rust import AGED, KEPT, OPENED, PAST, RATED, SIGNALS, TIMED, fit
+from test_each_c import RESPONSE
+from test_each_message_c import ANSWERED
 
 from ltlc.assurance.reading.c.files import WrittenInC
 from ltlc.assurance.reading.outcomes import Difference, ReadBack
@@ -25,7 +27,7 @@ from ltlc.specification.specification import Specification
 
 def read(text: str, compiled: list[Compiled], whole: Specification) -> Sequence[WrittenInC | Difference]:
     files = in_c(compiled, whole)
-    return written(text, files.header, files.source, compiled, whole.timeout)
+    return written(text, files.header, files.source, compiled, whole.rate, whole.timeout)
 
 
 def outcome(text: str, compiled: list[Compiled], whole: Specification) -> ReadBack | Difference:
@@ -35,7 +37,7 @@ def outcome(text: str, compiled: list[Compiled], whole: Specification) -> ReadBa
 
 def test_every_feature_is_read_back() -> None:
     count = 0
-    for text in (*texts(), DECLARED + "".join(f"never {condition}\n" for condition in CONDITIONS)):
+    for text in (*texts(), *RATED, DECLARED + "".join(f"never {condition}\n" for condition in CONDITIONS)):
         compiled, whole = from_text(text)
         some = fit(compiled, whole)
         for number, part in enumerate(read(emit(some, whole), some, whole) if some else ()):
@@ -74,21 +76,25 @@ AGES, COUNTED = "always age(scan) <= 1 s and age(v) <= 2 s", "never count(scan <
 OCCURS = "always (not once v > 2 3 times within 2 s or rate(scan) >= 4 Hz over 1 s)"
 
 
-@pytest.mark.parametrize("property_", [TIMED, OPENED, AGED, PAST, KEPT, AGES, COUNTED, OCCURS])
-def test_whatever_is_changed_in_the_text_is_refused(property_: str) -> None:
-    compiled, whole = from_text(SIGNALS + property_)
+WHOLE = [SIGNALS + property_ for property_ in (TIMED, OPENED, AGED, PAST, KEPT, AGES, COUNTED, OCCURS)]
+
+
+@pytest.mark.parametrize("text_", [*WHOLE, RATED[1], RESPONSE, ANSWERED])
+def test_whatever_is_changed_in_the_text_is_refused(text_: str) -> None:
+    compiled, whole = from_text(text_)
     text = emit(compiled, whole)
-    (part,) = read(text, compiled, whole)
+    part, *_ = read(text, compiled, whole)
     assert isinstance(part, WrittenInC)
+    labels = [each.specification.label for each in compiled]
     found = [(line, changed) for line, changed in mutants(text) if changed != text]
-    missed = [line for line, changed in found if not is_refused(changed, part)]
+    missed = [line for line, changed in found if not is_refused(changed, part, labels)]
     assert len(found) > 80
     assert missed == []
 
 
-def is_refused(text: str, part: WrittenInC) -> bool:
+def is_refused(text: str, part: WrittenInC, labels: list[str]) -> bool:
     try:
-        require_same(text, part.definitions, [part.struct.of.specification.label])
+        require_same(text, part.definitions, labels)
     except NotUnderstoodError:
         return True
     return False

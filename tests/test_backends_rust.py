@@ -18,7 +18,7 @@ from edges import drawn
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 from lowered import texts
-from replaying import judged
+from replaying import MESSAGES, judged
 from stepping import expected, from_text, machines, samples, specification
 
 from ltlc.assurance.c_programs import rust_programs
@@ -74,7 +74,9 @@ def test_any_machines_over_any_conditions_are_stepped_as_defined(data: st.DataOb
 @needs_rustc
 def test_what_reads_nothing_is_judged_in_time() -> None:
     compiled, whole = from_text("always 1 < 2\neventually 2 < 1 within 1 s\n")
-    for of, program in zip(compiled, rust_programs(file_of(compiled, whole), compiled, whole) or (), strict=True):
+    for of, program in zip(
+        compiled, rust_programs(file_of(compiled, whole), compiled, whole, MESSAGES) or (), strict=True
+    ):
         assert isinstance(judged(of, program), Replayed)
 
 
@@ -119,7 +121,7 @@ def test_what_has_no_spelling_is_refused_by_name() -> None:
 def test_the_replay_finds_nothing_in_what_is_emitted_for_each_feature() -> None:
     compiled, whole = from_text(next(texts()))
     some = fit(compiled, whole)[::2]
-    found = rust_programs(file_of(some, whole), some, whole)
+    found = rust_programs(file_of(some, whole), some, whole, MESSAGES)
     assert found is not None
     assert len(some) > 12
     for each, program in zip(some, found, strict=True):
@@ -137,6 +139,11 @@ KEPT = 'after_until mode == "a", mode == "b", always v <= @{v, opening}'
 RECENT = "never all(@{v, -2:} > 1)"
 AGED = "always age(scan) <= 1 s"
 PAST = "always (new mode implies historically v > 2 for 1 s)"
+RATED = [
+    f"_rate_ = 30\n{SIGNALS}{TIMED}\n{AGED}\n{PAST}\nalways 1 < 2\n{RECENT}",
+    f"_rate_ = 3\n_timeout_ = 5 s\n{SIGNALS}{OPENED}\n{PAST}",
+]
+"""Ticks that begin with several sets of topics and with the session, every third of which is a nanosecond later."""
 FAULTS = [
     (TIMED, "time + 2000000000", "time + 2000000001"),
     (TIMED, "past(self.signals.v_latest, 1, 2)", "past(self.signals.v_latest, 0, 2)"),
@@ -160,9 +167,41 @@ def test_the_replay_finds_a_fault_in_the_text(property_: str, right: str, wrong:
     compiled, whole = from_text(SIGNALS + property_)
     file = file_of(compiled, whole)
     assert right in file.text
-    found = rust_programs(replace(file, text=file.text.replace(right, wrong)), compiled, whole)
+    found = rust_programs(replace(file, text=file.text.replace(right, wrong)), compiled, whole, MESSAGES)
     assert found is not None
     assert isinstance(judged(compiled[0], found[0]), Deviation)
+
+
+@needs_rustc
+@pytest.mark.parametrize("text", RATED)
+def test_the_replay_finds_nothing_in_what_looks_at_samples_with_ticks(text: str) -> None:
+    compiled, whole = from_text(text)
+    for of, program in zip(
+        compiled, rust_programs(file_of(compiled, whole), compiled, whole, MESSAGES) or (), strict=True
+    ):
+        assert isinstance(judged(of, program), Replayed), of.specification.text
+
+
+@needs_rustc
+@pytest.mark.parametrize(
+    ("property_", "right", "wrong"),
+    [
+        (TIMED, "self.fraction += 1;", "self.fraction += 2;"),
+        (TIMED, "self.latest.v = samples.v;", ""),
+        (TIMED, "&{ self.latest }", "&Samples { v: None, scan: None }"),
+        (AGED, "self.signals.ticks.next = time;", "self.signals.ticks.next = time + 1;"),
+        (PAST, "self.signals.new_mode = self.signals.new_mode || ", "self.signals.new_mode = "),
+        (PAST, "self.signals.new_mode = false;", ""),
+        (RECENT, "while next < time {", "while false {"),
+        (RECENT, "if self.next_tick() < next {", "if false {"),
+    ],
+)
+def test_the_replay_finds_a_fault_in_ticks(property_: str, right: str, wrong: str) -> None:
+    compiled, whole = from_text(f"_rate_ = 30\n{SIGNALS}{property_}")
+    file = file_of(compiled, whole)
+    assert right in file.text
+    (program,) = rust_programs(replace(file, text=file.text.replace(right, wrong)), compiled, whole, MESSAGES) or ()
+    assert isinstance(judged(compiled[0], program), Deviation)
 
 
 @needs_rustc
@@ -172,14 +211,16 @@ def test_a_run_ends_with_its_timeout() -> None:
         file = file_of(compiled, whole)
         assert "self.end = time + 5000000000" in file.text
         changed = replace(file, text=file.text.replace("self.end = time + 5000000000", f"self.end = time {text}"))
-        (program,) = rust_programs(changed, compiled, whole) or ()
+        (program,) = rust_programs(changed, compiled, whole, MESSAGES) or ()
         assert isinstance(judged(compiled[0], program), outcome)
 
 
 @needs_rustc
 def test_a_property_may_be_called_as_what_the_functions_of_the_file_call_their_types() -> None:
     compiled, whole = from_text(SIGNALS + "n: never @{v, -1} > nearest(v, scan)\nt: never max(scan) > 2")
-    for each, program in zip(compiled, rust_programs(file_of(compiled, whole), compiled, whole) or (), strict=True):
+    for each, program in zip(
+        compiled, rust_programs(file_of(compiled, whole), compiled, whole, MESSAGES) or (), strict=True
+    ):
         assert isinstance(judged(each, program), Replayed)
 
 
@@ -198,7 +239,6 @@ def test_the_file_needs_no_standard_library_and_gives_no_warning(tmp_path: Path)
         ("never sqrt(v) > 2", "the square root, for which `core` has no function"),
         ("never mod(v, 3) > 2 and sin(v) > 0", "the sine, for which `core` has no function"),
         ("never abs(id) > 3", "a comparison with `-`, `abs`, `min` or `max` of 64-bit integers, which is exact"),
-        ("_rate_ = 10\nnever v > 2", "ticks of `_rate_`"),
     ],
 )
 def test_what_rust_cannot_say_is_refused_by_name(property_: str, lacks: str, tmp_path: Path, capsys: Any) -> None:
@@ -223,19 +263,36 @@ def test_the_summary_says_that_nothing_was_replayed_without_a_compiler_and_what_
 
 @needs_rustc
 @pytest.mark.parametrize(
-    "name", ["self", "match", "move", "Some", "value", "Signals", "double", "time", "is_first", "ltlc", "monitors"]
+    "name",
+    [
+        "self",
+        "match",
+        "move",
+        "Some",
+        "value",
+        "Signals",
+        "double",
+        "time",
+        "is_first",
+        "ltlc",
+        "monitors",
+        "LIMIT",
+        "ids",
+    ],
 )
 def test_names_of_a_specification_hide_nothing_of_the_file(name: str) -> None:
     library(*from_text(f"decl {name} /{name} Float64MultiArray.data\n{name}: never any({name} > 2)\n"))
 
 
 @needs_rustc
-def test_the_program_of_the_documentation_runs(tmp_path: Path) -> None:
+@pytest.mark.parametrize("name", ["watch", "motors", "answers"])
+def test_the_programs_of_the_documentation_run(name: str, tmp_path: Path) -> None:
     page = (Path(__file__).parents[1] / "docs/rust.md").read_text(encoding="utf-8")
-    (program,) = re.findall(r"```rust\n(.*?)```", page, re.S)
-    declared = re.search(r"\n\n((?:    (?:decl|slow|clear).*\n)+)", page)
-    assert declared is not None
-    (tmp_path / "watch.rs").write_text(emit(*from_text(textwrap.dedent(declared[1]))))
+    found = re.findall(r"\n\n((?:    [^\n]*\n)+)\na program is\n\n```rust\n(.*?)```", page, re.S)
+    texts_ = {re.findall(r"mod (\w+);", program)[0]: (text, program) for text, program in found}
+    assert texts_.keys() == {"watch", "motors", "answers"}
+    text, program = texts_[name]
+    (tmp_path / f"{name}.rs").write_text(emit(*from_text(textwrap.dedent(text))))
     (tmp_path / "main.rs").write_text(program)
     done = subprocess.run(
         [str(compiler()), "--edition=2021", "-Dwarnings", "main.rs"],

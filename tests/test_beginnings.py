@@ -109,14 +109,15 @@ def test_emitted_c_does_what_is_defined_while_signals_are_silent(rate: str) -> N
     assert all(isinstance(each, ReadBack) for each in read_back_c(files, compiled, whole))
 
 
-def test_emitted_rust_does_what_is_defined_while_signals_are_silent() -> None:
-    compiled, whole = from_text(TOLD)
+@pytest.mark.parametrize("rate", ["", "_rate_ = 10\n"])
+def test_emitted_rust_does_what_is_defined_while_signals_are_silent(rate: str) -> None:
+    compiled, whole = from_text(rate + TOLD)
     file = rust.file_of(compiled, whole)
-    read = reading_rust.written(file.text, file.c.header, file.c.source, compiled)
+    read = reading_rust.written(file.text, file.c.header, file.c.source, compiled, whole.rate)
     assert [isinstance(each, WrittenInC) and type(each.read_back()) for each in read] == [ReadBack] * 7
     if rust_compiler() is None:
         pytest.skip("there is no compiler for Rust here")
-    found = rust_programs(file, compiled, whole)
+    found = rust_programs(file, compiled, whole, MESSAGES)
     assert found is not None
     assert all(isinstance(judged(of, program), Replayed) for of, program in zip(compiled, found, strict=True))
 

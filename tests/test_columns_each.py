@@ -158,6 +158,26 @@ def test_a_clock_step_of_a_slice_judges_the_values_of_its_last_step(text: str) -
         assert state(fast.session) == state(reference)
 
 
+@pytest.mark.parametrize(
+    ("text", "last", "order"),
+    [
+        ("always (kind == 1 implies eventually kind == 2 within 9 ns)", {"id": 1.0, "kind": 0.0}, [3, 5, 7]),
+        ("never (kind == 1 and v > 2)", {"v": 3.0}, [7, 3, 5]),
+    ],
+)
+def test_ids_that_time_decides_at_once_are_named_in_their_order_and_by_a_message_as_they_began(
+    text: str, last: dict[str, float], order: list[int]
+) -> None:
+    rows: list[Row] = [(0, "/odom", {"v": 0.0})]
+    rows += [(0, "/track", {"id": number, "kind": 1.0}) for number in (7.0, 3.0, 5.0)]
+    rows.append((90, "/track" if "id" in last else "/odom", last))
+    session, fast = both(f"p: each g of id: {text}", rows, random.Random(0))
+    assert not fast.ways[0].because
+    for one in (session, fast.session):
+        (slices,) = one.sliced
+        assert list(slices.ids.violated) == order
+
+
 def test_many_slices_take_what_they_share_in_parts(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(elements, "MOST", 20)
     chance = random.Random(2)

@@ -56,6 +56,17 @@ def test_what_is_drawn_of_each_id_and_each_message_is_judged_as_the_definition_s
         steps.update(found.steps)
 
 
+@pytest.mark.parametrize(("constant", "waits"), [("0.5", False), ("0", True)])
+def test_the_reference_does_not_wait_for_a_value_that_decides_nothing_beside_another(
+    constant: str, waits: bool
+) -> None:
+    """No int8 is 0.5: whatever `v` is, `small` makes no difference."""
+    text = "decl v /v Float64.data\ndecl small /small Int8.data\n"
+    text += f"p: after_until new small, small != {constant} and v > 0.5, v > 0.5\n"
+    [of] = reference.properties(text).values()
+    assert (frozenset({("small", 0)}) in of.reads.waited) == waits
+
+
 def test_a_case_that_differs_is_made_small(monkeypatch: pytest.MonkeyPatch) -> None:
     text = "decl v /v Float64.data\ndecl w /w Float64.data\np: always (v < 3 or w > 1)\nq: never w > 5\n"
     rows = [Row(number * 10**9, {"/v": {"v": float(number)}, "/w": {"w": 0.0}}) for number in range(9)]

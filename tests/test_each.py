@@ -249,7 +249,7 @@ def test_names_of_the_form_are_names_elsewhere() -> None:
         ("each g of id, kind: never dist > 2", "`/track` has two keys, but a message has one id"),
         ("each g of id limit 0: never dist > 2", "`limit` is the most that are kept"),
         ("each g of id + 1: never dist > 2", "cannot stand here"),
-        ("each g of id: never v > 2", "the property reads nothing from `/track`"),
+        ("each g of id: never v > 2", "the property uses neither `g` nor a value or news from `/track`"),
         ("each g of id, stop: never dist > 2", "`stop` is a boolean, and `id` is a number"),
         ("each g of id: never new g", "`g` is an id: it never changes"),
         ("each g of id: never @{g, -1} > 2", "`g` is an id: it never changes"),
@@ -323,6 +323,14 @@ def test_where_ids_were_left_out_not_all_is_well(tmp_path: Path) -> None:
     )
     assert judged_goals(tmp_path, GOALS_TEXT.replace("of goal:", "of goal limit 1:")).exit_code == 3
     assert judged_goals(tmp_path, text).exit_code == 0, "what is as new takes no place"
+
+
+def test_ids_that_would_not_stand_alone_are_in_quotes(tmp_path: Path) -> None:
+    rows = "".join(f'{{"time": 0, "name": {json.dumps(name)}}}\n' for name in ("", "arm", "motor: left, 2"))
+    (tmp_path / "run.jsonl").write_text(rows)
+    report = ltlc.run('decl name /n String.data\np: each n of name: always n == "x"\n', tmp_path / "run.jsonl")
+    told = 'p: violated by 3 of 3 ids: "" at +0 s, arm at +0 s, "motor: left, 2" at +0 s; 3 messages'
+    assert report.text().splitlines()[-1] == told
 
 
 def test_messages_that_were_left_out_are_reported_beside_the_verdict(tmp_path: Path) -> None:

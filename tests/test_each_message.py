@@ -282,10 +282,9 @@ def test_a_sentence_says_that_it_is_judged_from_each_message_on() -> None:
     assert English(of).sentence().startswith("For each message of goal: at some moment in the next 1 s")
 
 
-@pytest.mark.parametrize("target", ["python", "rust"])
-def test_a_target_refuses_by_name_what_is_judged_from_each_message_on(target: str) -> None:
+def test_python_refuses_by_name_what_is_judged_from_each_message_on() -> None:
     with pytest.raises(UnusableInput) as refused:
-        ltlc.build(ANSWERED, target)
+        ltlc.build(ANSWERED, "python")
     assert [(d.code, "each message of `goal`" in d.message) for d in refused.value.diagnostics] == [("LTL708", True)]
 
 
@@ -341,3 +340,11 @@ def test_what_is_judged_for_each_id_is_not_offered_for_each_message() -> None:
         )
     )
     assert [each.code for each in found if "each new" in each.help] == []
+
+
+def test_a_topic_that_only_brings_news_is_not_why_nothing_started() -> None:
+    text = "decl v /v Float64.data\ndecl bump /bump std_msgs/Empty\ndecl other /other Float64.data\n"
+    text += "b: each new v: eventually new bump within 1 s\nc: each new v: eventually other < 1\n"
+    news, value = ltlc.monitor(text).finish().text().splitlines()
+    assert news == "b: not started; 0 messages of v; 0 episodes"
+    assert value == "c: not started; no message on /other; 0 messages of v; 0 episodes"

@@ -14,6 +14,7 @@ from test_each_message import MANY
 import ltlc
 from ltlc.assurance.c_library import Library, compiler
 from ltlc.assurance.compiled_program import VERDICTS
+from ltlc.assurance.library import Loaded
 from ltlc.assurance.reading.c.files import written
 from ltlc.assurance.reading.outcomes import Difference
 from ltlc.assurance.replay import Deviation, Replayed
@@ -64,9 +65,8 @@ FAULTS = {
     "values that tell instances apart": ("only an opening", " && one->prog_opening == other->prog_opening", ""),
     "clocks that do": ("a topic that is not read", "one->due_0 == other->due_0 && ", ""),
     "one that moves up": ("an opening", "all->open[all->count] = *one;", ""),
-    "a message that is no step": ("an opening", "own->invalid != invalid", "false"),
     "what is owed": ("no clock", "verdict == PROPS_PRESUMABLY_VIOLATED", "verdict == PROPS_SATISFIED"),
-    "deadlines": ("an opening", "if (due < all->due)", "if (due > all->due)"),
+    "deadlines": ("an opening", "right < left ? right : left", "right > left ? right : left"),
     "time that goes back": ("an opening", " || time < all->time)", ")"),
     "the session": ("ages", "!props_begin(&all->before, time)", "false"),
 }
@@ -87,11 +87,12 @@ CHANGES = {
     "what is left out": ("c", "all->left_out = counted(all->left_out, 1u);", ""),
     "what is said of a message without a place": ("c", "return has_place || !opens;", "return true;"),
     "what is counted": ("c", "? UINT32_MAX : count + more", "? 0u : count + more"),
-    "the first": ("c", "found.since < all->first.since", "found.since > all->first.since"),
-    "the last": ("c", "found.since >= all->last.since", "found.since < all->last.since"),
+    "the first": ("c", "own->since < all->first.since", "own->since > all->first.since"),
+    "the last": ("c", "own->since >= all->last.since", "own->since < all->last.since"),
     "what is satisfied": ("c", "all->satisfied = counted(all->satisfied, many);", ""),
     "when one is compared with others": ("c", " || old_state != own->state", ""),
     "only this message": ("c", "one->monitors.signals.new_prog_this_one = false;\n        has", "has"),
+    "a message that is no step": ("c", "own->invalid != invalid", "false"),
     "a step of all": ("c", "samples->has_dist || samples->has_prog || ", "samples->has_dist || "),
     "a function more": ("c", "/* A count, and", "static void f(void) {}\n/* A count, and"),
 }
@@ -112,10 +113,15 @@ def test_instances_are_not_read_back_as_a_property_of_whole_runs_nor_the_other_w
 
 @pytest.mark.parametrize("name", TEXTS)
 def test_messages_find_places_as_by_rows(name: str) -> None:
-    compiled, specification = from_text(TEXTS[name])
     path = compiler()
     assert path is not None
-    library, plan = Library(emit(compiled, specification), path), load_plan(compiled, specification)
+    require_as_by_rows(TEXTS[name], Library(emit(*from_text(TEXTS[name])), path))
+
+
+def require_as_by_rows(text: str, library: Loaded) -> None:
+    """Instances in a library find of random runs, with more messages than there is place for, what rows do."""
+    compiled, specification = from_text(text)
+    plan = load_plan(compiled, specification)
     opener = specification.properties[0].slicing
     assert isinstance(opener, Instances)
     for seed in range(30):
@@ -148,9 +154,10 @@ REFUSED = {
 }
 
 
+@pytest.mark.parametrize("target", ["c", "rust"])
 @pytest.mark.parametrize(("text", "said"), REFUSED.values(), ids=REFUSED)
-def test_what_instances_in_c_cannot_do_is_refused_by_name(text: str, said: str) -> None:
+def test_what_instances_cannot_do_is_refused_by_name(text: str, said: str, target: str) -> None:
     with pytest.raises(UnusableInput) as refused:
-        ltlc.build(HEAD + text, "c")
+        ltlc.build(HEAD + text, target)
     assert {each.code for each in refused.value.diagnostics} == {"LTL708"}
     assert any(said in f"{each.message}; {each.help}" for each in refused.value.diagnostics)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from itertools import accumulate
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +16,7 @@ from ltlc.inputs.recordings.reading import Offset, ReadOptions, limit
 from ltlc.monitoring.judging.run import Judge, RunReport
 from ltlc.runtime.rows import ByRows
 from ltlc.runtime.session import Session
+from ltlc.semantics.verdicts import Verdict
 
 HEAD = """
 decl a /a sensor_msgs/JointState.effort
@@ -144,3 +146,39 @@ def test_an_until_before_the_recording_is_reported(tmp_path: Path) -> None:
 
 def test_a_time_with_a_plus_is_an_offset() -> None:
     assert (limit("+0.5"), limit("0.5"), limit("-3")) == (Offset(500_000_000), 500_000_000, -3_000_000_000)
+
+
+STEPS = st.lists(st.tuples(st.integers(1, 3), st.booleans(), st.booleans()), min_size=2, max_size=9)
+
+
+@given(STEPS)
+def test_what_has_not_held_long_enough_is_reported_with_how_long_it_has(
+    tmp_path_factory: pytest.TempPathFactory, steps: list[tuple[int, bool, bool]]
+) -> None:
+    text = "decl near /near Bool.data\nalways (near implies historically v < 1 for 4 s)"
+    times = [*accumulate(gap for gap, _, _ in steps)]
+    rows = [{"time": time, "v": 2 - 2 * held, "near": near} for time, (_, held, near) in zip(times, steps, strict=True)]
+    report, since = judged(tmp_path_factory.mktemp("run"), text, *rows), None
+    for time, (_, held, near) in zip(times, steps, strict=True):
+        before, since = since, (time if since is None else since) if held else None
+        if near and (since is None or time - since < 4):
+            told = [each["lasted"] for each in told_by(report) if "lasted" in each]
+            assert told == ([time - before] if held and before is not None else [])
+            assert not told or f"historically v < 1 for 4 s: false, {told[0]:g} s so far" in because(report)
+            return
+    assert report.session is not None
+    assert report.session.tracks[0].verdict is not Verdict.VIOLATED
+
+
+def told_by(report: RunReport) -> list[dict[str, Any]]:
+    found: list[dict[str, Any]] = report.document()["properties"][0]["decided_at"]["because"]
+    return found
+
+
+@pytest.mark.parametrize(("ended", "lasted"), [(1.5, "1.5 s"), (3.75, "3.75 s")])
+def test_a_bound_that_a_violation_came_before_is_reported_with_what_had_passed_of_it(
+    tmp_path: Path, ended: float, lasted: str
+) -> None:
+    rows = ({"time": time, "v": v} for time, v in ((0, 8), (1, 3), (1 + ended, 7)))
+    found = because(judged(tmp_path, "after v < 5, always v < 7 for 4 s", *rows))
+    assert f'more than 4 s since the first "v < 5": false, {lasted} so far' in found

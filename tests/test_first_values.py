@@ -126,14 +126,15 @@ def test_c_begins_with_the_other_value(settings: str) -> None:
 
 
 @pytest.mark.skipif(rust_compiler() is None, reason="there is no rustc here")
-def test_rust_begins_with_the_other_value() -> None:
-    compiled, specification = from_text(EMITTED.replace("never sqrt(x) - @{x, -1 else 2} > 1\n", ""))
+@pytest.mark.parametrize("settings", ["", "_rate_ = 10\n"])
+def test_rust_begins_with_the_other_value(settings: str) -> None:
+    compiled, specification = from_text(settings + EMITTED.replace("never sqrt(x) - @{x, -1 else 2} > 1\n", ""))
     file = rust.file_of(compiled, specification)
-    found = written_in_rust(file.text, file.c.header, file.c.source, compiled)
+    found = written_in_rust(file.text, file.c.header, file.c.source, compiled, specification.rate)
     assert [None if isinstance(each, Difference) else type(each.read_back()) for each in found] == [ReadBack] * len(
         found
     )
-    programs = rust_programs(file, compiled, specification)
+    programs = rust_programs(file, compiled, specification, MESSAGES)
     assert programs is not None
     assert all(isinstance(judged(*pair), Replayed) for pair in zip(compiled, programs, strict=True))
 

@@ -106,6 +106,12 @@ SAME = [
 ]  # fmt: skip
 
 OTHERS = [
+    ("for each g of v, always v == g and p", "each g of v: always v == g and p"),
+    ("each g in v: always v == g", "each g of v: always v == g"),
+    ("for every new v, eventually p within 1 s", "each new v: eventually p within 1 s"),
+    ("for each v: eventually p within 1 s", "each new v: eventually p within 1 s"),
+    ("always scan[*] > 1", "always all(scan > 1)"),
+    ("always rate(v) > 10 Hz", "always rate(v) >= 10 Hz over 1 s"),
     ("p S q", "p since q"),
     ("p until 3 s", "always p for 3 s"),
     ("p U[1,5] q", "(always p for 1 s) and (within [1 s, 5 s], until q, always p)"),
@@ -222,7 +228,19 @@ def test_what_is_offered_is_in_the_names_and_numbers_of_the_file_and_accepted(li
 
 @pytest.mark.parametrize(
     "line",
-    ["p && q W r", "F[1,4] p", "G[1,4] p", "F[0,2] p", "always (p implies X q)", "never v' > 2", "when p, q", "X p"],
+    [
+        "p && q W r",
+        "F[1,4] p",
+        "G[1,4] p",
+        "F[0,2] p",
+        "always (p implies X q)",
+        "never v' > 2",
+        "when p, q",
+        "X p",
+        "always scan[*] > 1",
+        "always rate(v) > 10 Hz",
+        "for each v: eventually p",
+    ],
 )
 def test_a_note_says_where_what_is_offered_differs(line: str) -> None:
     assert answer(line)[1]
@@ -327,6 +345,11 @@ def _without(phrase: phrasebook.Phrase, line: str) -> phrases.Meant | None:
 def test_the_lines_around_are_read_as_if_it_were_not_there() -> None:
     text = f"{NAMES}a: never p\nif p then q\nnever q and\n  r\np U q  # why\nb: never r s\n"
     assert [each.code for each in findings(text) if each.code != "LTL104"] == ["LTL021", "LTL021", "LTL019"]
+
+
+def test_an_each_without_a_key_is_answered_with_its_forms() -> None:
+    (found,) = (each for each in findings(f"{NAMES}l: each v: eventually p\n") if each.code == "LTL101")
+    assert found.help.startswith("write `each NAME of KEY: P`")
 
 
 def test_a_line_that_is_only_wrong_is_no_foreign_phrase() -> None:

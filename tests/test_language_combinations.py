@@ -6,7 +6,7 @@ import math
 from pathlib import Path
 
 import pytest
-from stepping import from_text
+from stepping import from_text, session
 
 from ltlc.base.source import Source
 from ltlc.cli import main
@@ -48,6 +48,24 @@ def test_an_empty_list_has_no_combinations_and_nan_does_not_count() -> None:
     assert counted("ox < tx over (ox), (tx)", ox=(math.nan, 2.0), tx=(9.0, math.nan)) == 1
 
 
+def test_arrays_side_by_side_in_a_message_belong_together_up_to_the_end_of_the_shortest(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = "decl pos /joints JointState.position\ndecl vel /joints JointState.velocity\n"
+    text += "p: never any(pos > 1 and vel > 1)\n"
+    messages = [([2.0, 0.0], [0.0, 2.0]), ([2.0, 0.0, 2.0], [0.0]), ([0.0, 2.0], [0.0, 1.5, 5.0])]
+    rows = session(text)
+    for time, values in enumerate(messages):
+        rows.samples(time * 10**9, ("pos", "vel"), [tuple(each) for each in values])
+    (track,) = rows.tracks
+    assert [verdict.value for verdict in track.verdicts or ()] == [*["presumably_satisfied"] * 2, "violated"]
+    lines = [f'{{"time": {n}, "pos": {pos}, "vel": {vel}}}' for n, (pos, vel) in enumerate(messages)]
+    (tmp_path / "props.txt").write_text(text)
+    (tmp_path / "run.jsonl").write_text("\n".join(lines))
+    assert main(["run", str(tmp_path / "props.txt"), str(tmp_path / "run.jsonl")]) == 1
+    assert "p: violated at +2 s (step 2)" in capsys.readouterr().out
+
+
 def test_three_lists_are_combined() -> None:
     assert counted("ox + tx > scan over (ox), (tx), (scan)", ox=(1.0, 2.0), tx=(1.0, 2.0), scan=(2.5, 3.5)) == 4
 
@@ -62,12 +80,12 @@ def test_too_many_combinations_have_no_count(monkeypatch: pytest.MonkeyPatch) ->
 @pytest.mark.parametrize(
     ("said", "message"),
     [
-        ("any(ox < tx)", "`ox` and `tx` are not fields of one array of messages"),
+        ("any(ox < tx)", "`ox` and `tx` are not side by side in one message"),
         ("any(ox < tx over (ox), (v))", "`over` lists arrays, but `v` is a number"),
         ("any(ox < tx over (ox), (tx), (ox))", "`ox` is listed twice"),
         ("any(ox < tx over (ox), (scan))", "`tx` is missing from the lists of `over`"),
         ("any(ox < 1 over (ox), (tx))", "`over` lists `tx`, which the condition does not use"),
-        ("any(ox < tx over (ox, tx))", "`ox` and `tx` are not fields of one array of messages"),
+        ("any(ox < tx over (ox, tx))", "`ox` and `tx` are not side by side in one message"),
     ],
 )
 def test_lists_that_do_not_fit_are_reported(said: str, message: str) -> None:

@@ -135,14 +135,14 @@ def test_strictly_younger_is_a_nanosecond_less() -> None:
 
 def test_what_decides_a_property_is_what_it_reads() -> None:
     found = only("always (tilt > 0.3 implies once (near since new scan) within 2 s) and age(goal) <= 1 s")
-    assert [atom.name for atom in found.atoms] == ["tilt > 0.3", "near", "new scan", "message on goal.x"]
+    assert [atom.name for atom in found.atoms] == ["tilt > 0.3", "near", "new scan", "message on goal"]
     assert found.alphabet.atoms == ("tilt > 0.3", "near")
     assert topics(found) == ("/tilt", "/near", "/scan", "/goal")
 
 
 def test_a_message_is_news_of_all_that_is_read_from_its_topic() -> None:
     found = only("always ((new goal.y or age(goal.x) <= 1 s) implies new scan) and age(goal.y) <= 1 s")
-    assert [atom.name for atom in found.atoms] == ["new goal.y", "message on goal.y", "new scan"]
+    assert [atom.name for atom in found.atoms] == ["new goal", "message on goal", "new scan"]
     assert len({clock for clock in timed_atoms(encode(found.property, EPISODE)) if isinstance(clock, Age)}) == 1
 
 

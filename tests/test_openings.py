@@ -307,15 +307,20 @@ def test_a_finding_and_an_explanation_show_a_value_at_the_opening_as_it_is_writt
     assert "as in `d =={0.01} @{d, opening}`" in found.help
     assert examined.specification is not None
     _, explained = explain(study_of(examined.specification, EPISODE, BUDGET), BUDGET)
-    assert explained.conditions[-1] == ("d < @{d, opening} + 1", "d is less than (d when the scope opened) + 1")
-    assert explained.english.endswith("at every step from then on, d is less than (d when the scope opened) + 1.")
+    assert explained.conditions[-1] == (
+        "d < @{d, opening} + 1",
+        "d is less than (what d was when the scope opened) + 1",
+    )
+    assert explained.english.endswith(
+        "at every step from then on, d is less than (what d was when the scope opened) + 1."
+    )
 
 
 def test_a_value_at_an_opening_is_explained_in_words_within_a_calculation() -> None:
     specification, _ = load_text(Source("props.txt", SIGNALS + "p: " + DOCK))
     assert specification is not None
     [explained] = explain(study_of(specification, EPISODE, Budget(30.0, 1024)), Budget(30.0, 1024))
-    assert explained.english.endswith("at every step, d is at most (d when the scope opened) + 0.1.")
+    assert explained.english.endswith("at every step, d is at most (what d was when the scope opened) + 0.1.")
     assert explained.conditions[2][0] == "d <= @{d, opening} + 0.1"
 
 

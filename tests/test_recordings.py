@@ -156,10 +156,11 @@ def test_fields_of_the_messages_of_an_array_come_together(tmp_path: Path, line: 
 
 def test_an_empty_array_is_to_blame_only_where_a_measurement_of_it_is_needed(tmp_path: Path) -> None:
     path = tmp_path / "run.jsonl"
-    path.write_text('{"time": 0, "a": [], "b": [], "c": [], "d": []}\n')
-    declared = "".join(f"decl {name} /{name} LaserScan.ranges\n" for name in "abcd")
-    report = run(*from_text(f"{declared}p: never (any(a > min(b[1:])) and sum(c) > 1 and median(d) < 3)\n"), path)
-    assert report.text().splitlines()[-1].endswith("an expression had no value: b was empty, d was empty")
+    path.write_text('{"time": 0, "a": [], "b": [], "c": [], "d": [], "e": []}\n')
+    declared = "".join(f"decl {name} /{name} LaserScan.ranges\n" for name in "abcde")
+    said = "any(a > min(b[1:])) and sum(c) > 1 and median(d) < nearest(3, e)"
+    report = run(*from_text(f"{declared}p: never ({said})\n"), path)
+    assert report.text().splitlines()[-1].endswith("no value: b was empty, d was empty, e was empty")
 
 
 def test_elements_that_are_nan_are_told_and_why_there_was_no_step(tmp_path: Path) -> None:

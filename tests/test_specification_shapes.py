@@ -55,6 +55,7 @@ def keys(text: str) -> list[Any]:
         "_simulator_ = tf\nforall r in {a, b}: never r.velocity > 2",
         "decl x1 /x Bool.data decl x2 /y Bool.data\nforall k in {x1, x2}: always eventually new k within 2 s",
         'decl m1 /a String.data decl m2 /b String.data\nforall m in {m1, m2}: always m == "IDLE"',
+        "decl p1 /a Point decl p2 /b Point\nforall p in {p1, p2}: always age(p) < 1 s and p.x < 2",
     ],
 )
 def test_properties_that_differ_in_names_only_have_one_shape(text: str) -> None:

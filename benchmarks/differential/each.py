@@ -1,4 +1,4 @@
-"""Properties of each id and of each message: drawn, judged by rows, by columns, in files, in C and by definition.
+"""Properties of each id and each message: drawn, judged by rows, columns, in files, C and Rust, and by definition.
 
 By `docs/language.md`, 'One property for each id': of a slice, rows are left out, and what is left is a run.
 `each new s: P` is `always (new s implies P)`.
@@ -14,7 +14,7 @@ from random import Random
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from benchmarks.differential import each_in_c, files, targets
+from benchmarks.differential import each_compiled, files, targets
 from benchmarks.differential.campaign import Difference, Outcome, live
 from benchmarks.differential.compare import PERMANENT, Continued, compared, refuted
 from benchmarks.differential.draw import DECLARATIONS, Draw
@@ -181,7 +181,7 @@ class Case:
     def __init__(self, text: str) -> None:
         self.each = Each(text)
         self.of = targets.monitors(text)
-        self.in_c = each_in_c.load(text)
+        self.compiled = each_compiled.load(text)
         self.is_sliced = isinstance(self.each.body, s.EachOf)
 
 
@@ -199,9 +199,11 @@ def judge_one(found: Outcome, case: Case, recording: Recording, chance: Random) 
         if case.is_sliced and not is_near and not problems:
             problems += _of_whole(session, judged)
         found.differences += [Difference(way, "p", problem, each.text, recording) for problem in problems]
-    if case.in_c is not None and (in_c := each_in_c.found_by(case.in_c, case.of, recording, judged)) is not None:
-        problems, _ = _compared(found, "C", wanted, in_c, case.is_sliced)
-        found.differences += [Difference("C", "p", problem, each.text, recording) for problem in problems]
+    for language, library in case.compiled.items():
+        results_ = each_compiled.found_by(library, case.of, recording, judged)
+        if results_ is not None:
+            problems, _ = _compared(found, language, wanted, results_, case.is_sliced)
+            found.differences += [Difference(language, "p", problem, each.text, recording) for problem in problems]
 
 
 def _compared(

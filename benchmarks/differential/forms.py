@@ -77,10 +77,6 @@ def is_untimed(node: s.Node) -> bool:
     return all(map(is_untimed, inside))
 
 
-def looks_at_openings(node: s.Node) -> bool:
-    return any(isinstance(part, s.History) and isinstance(part.offset, s.Reference) for part, _ in s.walk(node))
-
-
 def _is_age(node: s.Node) -> bool:
     return isinstance(node, s.Call) and node.function.text == "age"
 

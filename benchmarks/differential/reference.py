@@ -26,7 +26,6 @@ from benchmarks.differential.forms import (
     asks_openings_in,
     is_state,
     is_untimed,
-    looks_at_openings,
     truth,
 )
 from benchmarks.differential.names import Said, nanoseconds, number, said
@@ -94,7 +93,7 @@ class Property:
         return self.forms[key]
 
     def _form(self, node: s.Node, favour: int, scope: int) -> Form:
-        if is_untimed(node) and not (isinstance(node, s.Connective | s.Negation) and looks_at_openings(node)):
+        if is_untimed(node) and not isinstance(node, s.Connective | s.Negation):
             reader = Reader(self.names, scope, favour, made=self.made)
             computed = any(_is_computed(part) for part, _ in s.walk(node))
             asked = reader.predicate(node)

@@ -21,7 +21,7 @@ ROOMS = {
     "backends/c": "test_backends_c.py test_backends_time.py test_assurance_reading_c.py test_each_c.py"
     " test_each_message_c.py",
     "backends/python": "test_backends_python.py test_backends_time.py test_assurance_replay.py test_ground_truth.py",
-    "backends/rust": "test_backends_rust.py",
+    "backends/rust": "test_backends_rust.py test_assurance_reading_rust.py test_each_rust.py",
     "backends/ros2": "test_backends_ros2*.py test_e2e_*.py test_each_code.py test_each_message_code.py",
     "interfaces/building": "test_commands_build.py test_assurance_reading_c.py test_backends_ament.py test_api.py",
     "monitoring/campaigns": "test_campaigns*.py",

@@ -28,11 +28,14 @@ from ltlc.specification.expressions import (
     Signal,
     Slope,
     When,
+    openings,
+    operands,
     reads,
+    subexpressions,
 )
 from ltlc.specification.functions import Function
 from ltlc.specification.specification import gone_name
-from ltlc.specification.text import number_text, text
+from ltlc.specification.text import as_written, number_text, text
 
 _PRIMITIVES = (
     (r"(\w+)\.distance\.(\w+)", "the distance from {} to {}"),
@@ -50,7 +53,7 @@ _PRIMITIVES = (
 )
 """What the simulation primitives are called, and elements that belong to an id."""
 
-AT_OPENING = "when the scope opened"
+AT_OPENING, AT_BEGINNING = "when the scope opened", "when the run began"
 
 RELATIONS = {
     Relation.LESS: ("less than", "at least"),
@@ -94,14 +97,20 @@ def atom_text(atom: Atom, holds: bool, verb: str = "is") -> str:
     match atom.condition:
         case Comparison(Call(Function.NORM, _), Relation.EQUAL, Number(0.0), margin):
             # Two vectors, which the name still has.
-            left, _, right = atom.name.partition(" ==")
+            left, _, right = as_written(atom.name).partition(" ==")
+            right = right.strip() if margin == 0 else right.partition("} ")[2]
             equal = f"{verb} {'' if holds else 'not '}{f'within {number_text(margin)} of' if margin else 'exactly'}"
-            return f"{left} {equal} {right.partition('} ')[2] or right.strip()}"
+            scopes = [opening.scope for side in operands(atom.condition) for opening in openings(side)]
+            when = AT_OPENING if any(scopes) else AT_BEGINNING
+            words = re.sub(r"@\{(.*?), opening\}", rf"what \1 was {when}", f"{left} {equal} {right}")
+            return re.sub(r"@\{(.*?), -(\d+)\}", lambda past: f"what {past[1]} was {_ago(int(past[2]))}", words)
         case Comparison(Count() as count, Relation.AT_LEAST | Relation.LESS as relation, Number(1.0)):
             is_any = relation is Relation.AT_LEAST
             if windows := {element.array for element in count.elements if isinstance(element.array, Recent)}:
                 return _of_samples(expression_text(windows.pop()), count, is_any, holds, verb)
-            return f"for {'some' if is_any == holds else 'no'} {_combined(count)}, {_holding(count, verb)}"
+            if holds and not is_any:  # what is counted is what fails
+                return f"for every {_combined(count)}, {_holding(count, verb, holds=False)}"
+            return f"for {'no' if is_any and not holds else 'some'} {_combined(count)}, {_holding(count, verb)}"
         case Comparison(Call(Function.INSIDE, (x, y, *_), zone), relation):
             where = "inside" if holds == (relation is Relation.AT_LEAST) else "outside"
             return f"{_point(x, y)} {verb} {where} {zone}"
@@ -120,7 +129,7 @@ def atom_text(atom: Atom, holds: bool, verb: str = "is") -> str:
         case IsTrue(Past(Signal(_, _, When() as predicate), samples)):
             return f"{_ago(samples)} {_holding(predicate, 'was', holds)}"
         case IsTrue(New(signal)):
-            return f"{'a' if holds else 'no'} message of {signal_text(signal)} {_ARRIVES[verb]}"
+            return f"{'a' if holds else 'no'} message of {heard_text(signal)} {_ARRIVES[verb]}"
         case IsTrue(Current(Signal(name))) if name.startswith(gone_name("")):
             return f"it {verb} {'' if holds else 'not '}missing in the last {name.removeprefix(gone_name(''))}"
         case IsTrue(operand):
@@ -187,7 +196,7 @@ def expression_text(expression: Expression) -> str:
         case Recent(signal, samples):
             return f"the last {samples + 1} samples of {signal_text(signal)}"
         case Opening(signal, scope):
-            return f"{signal_text(signal)} {AT_OPENING if scope else 'when the run began'}"
+            return f"what {signal_text(signal)} was {AT_OPENING if scope else AT_BEGINNING}"
         case Slope(signal):
             return f"the rate of change of {signal_text(signal)}"
         case Element(Recent()):
@@ -206,6 +215,13 @@ def expression_text(expression: Expression) -> str:
             return f"the element of {expression_text(array)} nearest to {expression_text(sought)}"
         case Call(Function.ANGLE_BETWEEN, (one, other)):
             return f"the angle between {expression_text(one)} and {expression_text(other)}"
+        case Call(Function.MOD, (one, other)):
+            return f"the remainder of {expression_text(one)} divided by {expression_text(other)}"
+        case Call(Function.NORM, components):
+            vector = text(components[0]).removesuffix(".x")
+            if list(map(text, components)) == [f"{vector}.{axis}" for axis in "xyz"]:
+                return f"the length of {vector}"
+            return f"the length of ({', '.join(map(expression_text, components))})"
         case Call(function, (operand,)) if function.noun:
             return f"the {function.noun} of {expression_text(operand)}"
         case _:
@@ -220,13 +236,21 @@ def _point(x: Expression, y: Expression) -> str:
 
 
 def _calculated(expression: Expression) -> str:
-    """What is calculated, as it is written, but for what is read of the past and of openings."""
+    """What is calculated, as it is written, but for what is said of arrays, and read of the past and of openings."""
     written = text(expression)
+    for part in subexpressions(expression):
+        if isinstance(part, Call) and part.array is not None:
+            written = written.replace(text(part), f"({expression_text(part)})")
     for read in dict.fromkeys(reads(expression)):
         if isinstance(read, Past | Recent | Opening) or read.signal.is_taken:
             written = written.replace(text(read), f"({expression_text(read)})")
             written = re.sub(rf"(?<=\w)\(({re.escape(f'({expression_text(read)})')})\)", r"\1", written)
     return written
+
+
+def heard_text(signal: Signal) -> str:
+    """What the messages of a signal are called: those of a vector by its name."""
+    return signal.whole or signal_text(signal)
 
 
 def signal_text(signal: Signal) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import assert_never
 
-from ltlc.analysis.atom_words import AT_OPENING, RELATIONS, atom_text, has_verb, predicate_words, signal_text
+from ltlc.analysis.atom_words import AT_OPENING, RELATIONS, atom_text, has_verb, heard_text, predicate_words
 from ltlc.semantics import ltl
 from ltlc.semantics import properties as p
 from ltlc.semantics.durations import Nanoseconds, duration_text
@@ -57,7 +57,7 @@ class English:
             case Instances(signal):
                 assert isinstance(self._property, p.After)
                 clause = self._clause(self._property.body, " from there on")
-                return f"for each message of {signal.name}: {clause}"
+                return f"for each message of {heard_text(signal)}: {clause}"
             case Slicing(keys, variable):
                 names = " or ".join(key.name for key in keys)
                 clause = self._clause(self._property, "")
@@ -192,8 +192,8 @@ class English:
                 often = f"{'at least' if holds else 'fewer than'} {times}"
                 span = "so far" if within is None else f"in the last {duration_text(within)}"
                 said = self._counted(operand, often, "" if times == 1 else "s", span, begins)
-                unless = f"{'or at most' if holds else 'and more than'} {duration_text(within or 0)}"
-                return f"{said}, {unless} has passed since the beginning" if presumed else said
+                unless = "or the start was at most" if holds else "and the start was more than"
+                return f"{said}, {unless} {duration_text(within or 0)} ago" if presumed else said
             case Previously(_, operand):
                 words = f"{self._operand(operand, 'was')} just before"
             case Once(_, operand, within):
@@ -213,6 +213,9 @@ class English:
         if isinstance(operand, News):
             return f"{often} message{plural} of {self._signal(operand)} arrived {span}"
         if begins:
+            became = isinstance(operand, ltl.Atom) and has_verb(self._atoms[operand.name])
+            if became:
+                return f"{self.predicate(operand, None, 'became')} {often} time{plural} {span}"
             return f"it happened {often} time{plural} {span} that {self.predicate(operand, None, 'was')}"
         return f"{self._operand(operand, 'was')} {often} time{plural} {span}"
 
@@ -224,7 +227,7 @@ class English:
         condition = self._atoms[news.name].condition
         assert isinstance(condition, IsTrue)
         assert isinstance(condition.operand, New)
-        return signal_text(condition.operand.signal)
+        return heard_text(condition.operand.signal)
 
 
 def _news_of(atom: Atom) -> str | None:

@@ -8,7 +8,7 @@ from typing import TypeVar
 
 from ltlc.assurance.c_library import Library, compiler
 from ltlc.assurance.c_program import CProgram
-from ltlc.assurance.c_table import InstancesProgram, TableLibrary, TableProgram
+from ltlc.assurance.c_table import InstancesProgram, TableProgram
 from ltlc.assurance.compiled_program import Libraries
 from ltlc.assurance.library import Loaded
 from ltlc.assurance.messages import Messages
@@ -19,6 +19,7 @@ from ltlc.assurance.traffic import Settings
 from ltlc.backends import rust
 from ltlc.backends.c import Files, emit
 from ltlc.backends.c.ids import Table
+from ltlc.backends.c.instances import OpenTable
 from ltlc.compiler import Compiled
 from ltlc.specification.specification import Specification
 
@@ -37,17 +38,14 @@ def c_programs(
     def written(some: Sequence[Compiled], of: Specification) -> Files:
         return emit(some, of, files.stem)
 
-    def of_table(libraries: Libraries, number: int, text: Files) -> Program:
-        return TableProgram(libraries, number, text, messages)
+    def program(libraries: Libraries, number: int, text: Files) -> Program:
+        return _program(libraries, number, text, messages)
 
-    if isinstance(files.table, Table):
-        return _in_libraries(files, compiled, specification, written, lambda of: TableLibrary(of, path), of_table)
-    program = CProgram if files.table is None else InstancesProgram
     return _in_libraries(files, compiled, specification, written, lambda of: Library(of, path), program)
 
 
 def rust_programs(
-    file: rust.File, compiled: Sequence[Compiled], specification: Specification
+    file: rust.File, compiled: Sequence[Compiled], specification: Specification, messages: Messages
 ) -> Sequence[Program] | None:
     """For each property the program that its part of emitted Rust is; None if there is no compiler for it."""
     path = rust_compiler()
@@ -55,9 +53,20 @@ def rust_programs(
         return None
 
     def program(libraries: Libraries, number: int, text: rust.File) -> Program:
-        return CProgram(libraries, number, text.c)
+        return _program(libraries, number, text.c, messages)
 
     return _in_libraries(file, compiled, specification, rust.file_of, lambda of: RustLibrary(of, path), program)
+
+
+def _program(libraries: Libraries, number: int, files: Files, messages: Messages) -> Program:
+    """The property with a number, in what says the same as emitted C."""
+    match files.table:
+        case None:
+            return CProgram(libraries, number, files)
+        case Table():
+            return TableProgram(libraries, number, files, messages)
+        case OpenTable():
+            return InstancesProgram(libraries, number, files)
 
 
 def _in_libraries(

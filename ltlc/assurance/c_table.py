@@ -1,4 +1,4 @@
-"""Tables in emitted C as something that can be replayed: of ids, and what is shown of each; of open instances."""
+"""Tables in emitted C or Rust, to be replayed: of ids, and what is shown of each; of open instances."""
 
 from __future__ import annotations
 
@@ -7,17 +7,15 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from ltlc.assurance.c_library import Library
 from ltlc.assurance.c_program import CProgram
 from ltlc.assurance.compiled_program import VERDICTS, require_refused, take
 from ltlc.assurance.instance_traffic import InstanceTraffic
-from ltlc.assurance.library import Monitors
+from ltlc.assurance.library import Loaded, Monitors
 from ltlc.assurance.messages import Messages
 from ltlc.assurance.replay import Id, Run, Shown, Stepper
 from ltlc.assurance.sliced_traffic import SlicedTraffic, Told
 from ltlc.assurance.traffic import Begun, Event, Heard, Passed, Quiet, Settings, Together
 from ltlc.assurance.values import Samples
-from ltlc.backends.c import Files
 from ltlc.compiler import Compiled
 from ltlc.runtime.times import NEVER
 from ltlc.semantics.durations import Nanoseconds
@@ -27,23 +25,15 @@ from ltlc.specification.expressions import Signal
 from ltlc.specification.specification import Instances, Slicing
 
 
-class TableLibrary(Library):
-    """The table of some emitted files, compiled by `compiler`. Raises CompilerError, ScratchError."""
-
-    def __init__(self, files: Files, path: str) -> None:
-        super().__init__(files, path)
-        self.functions.gate_step_of.argtypes = [ctypes.c_void_p, ctypes.c_int64, ctypes.c_int64, ctypes.c_void_p]
-        self.functions.gate_step_of.restype = ctypes.c_bool
-        self.functions.gate_show_of.argtypes = [ctypes.c_void_p, ctypes.c_int64, ctypes.POINTER(ctypes.c_int64)]
-        self.functions.gate_show_of.restype = ctypes.c_bool
-
-    def monitors(self) -> Table:
-        """The table before a run."""
-        return Table(self)
-
-
 class Table(Monitors):
-    """A table of ids in one run; what is said of monitors is said of all ids."""
+    """A table of ids in a library in one run; what is said of monitors is said of all ids."""
+
+    def __init__(self, library: Loaded) -> None:
+        super().__init__(library)
+        self._functions.gate_step_of.argtypes = [ctypes.c_void_p, ctypes.c_int64, ctypes.c_int64, ctypes.c_void_p]
+        self._functions.gate_step_of.restype = ctypes.c_bool
+        self._functions.gate_show_of.argtypes = [ctypes.c_void_p, ctypes.c_int64, ctypes.POINTER(ctypes.c_int64)]
+        self._functions.gate_show_of.restype = ctypes.c_bool
 
     def step_of(self, time: Nanoseconds, id_: int, sample: dict[Signal, Value], topic: str) -> bool:
         """A message of one id has come."""
@@ -63,7 +53,7 @@ class Table(Monitors):
 
 @dataclass(frozen=True)
 class TableProgram(CProgram):
-    """The only property in emitted C, which is judged for each id."""
+    """The only property in emitted C or Rust, which is judged for each id."""
 
     messages: Messages
 
@@ -75,8 +65,7 @@ class TableProgram(CProgram):
 
     def start(self, settings: Settings) -> Stepper[Event]:
         """A table before a run. Raises CompilerError."""
-        table = self.libraries.of(settings).monitors()
-        assert isinstance(table, Table)
+        table = Table(self.libraries.of(settings))
         ids = set[int]()
 
         def step(event: Event) -> Shown:
@@ -94,7 +83,7 @@ class TableProgram(CProgram):
 
 @dataclass(frozen=True)
 class InstancesProgram(CProgram):
-    """The only property in emitted C, which is judged from each message on."""
+    """The only property in emitted C or Rust, which is judged from each message on."""
 
     def runs(self, compiled: Compiled, samples: Samples) -> Iterator[Run[Any]]:
         """Messages, some of which open instances."""
@@ -157,6 +146,6 @@ def _require_refused(table: Table, now: Nanoseconds) -> None:
 
 
 def _whole(id_: Id) -> int:
-    """An id in C."""
+    """An id in C or Rust."""
     assert isinstance(id_, int)
     return id_

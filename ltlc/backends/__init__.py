@@ -24,8 +24,8 @@ FILE_NAMES = {
 }
 """The targets, and what their output is called, beside where one stands."""
 
-JUDGE_EACH = ("ros2", "ament")
-"""The targets that judge a property for each id."""
+JUDGE_EACH = ("ros2", "ament", "rust")
+"""The targets that judge a property for each id; Rust itself refuses those for which a table is not all they need."""
 
 
 def emit(target: str, compiled: Sequence[Compiled], specification: Specification) -> str:

@@ -1,4 +1,4 @@
-"""What a clock that is past a bound says to a person."""
+"""What it means that a clock is past a bound, in words."""
 
 from __future__ import annotations
 

@@ -37,7 +37,7 @@ def require_no_bytes(compiled: Sequence[Compiled]) -> None:
 
 
 def origin(signal: Signal) -> str:
-    """Where a reading comes from, as a declaration would say it."""
+    """Where a reading comes from, as in a declaration."""
     assert isinstance(signal.definition, Field)
     steps = []
     for step in signal.definition.path:

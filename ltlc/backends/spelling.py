@@ -1,4 +1,4 @@
-"""Typed expressions as code, by the table of functions; what the table does not say of a language its `Target` does."""
+"""Typed expressions as code, by the table of functions; a language's `Target` has what the table does not."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class NotInTargetError(Exception):
 
 
 class Target(Protocol):
-    """A language, as far as the table of functions does not say how it writes expressions."""
+    """How a language writes expressions, beyond the table of functions."""
 
     def spelling(self, primitive: Primitive, types: f.Types) -> f.Spelling | None:
         """How a primitive of such arguments is written; None if it cannot be."""

@@ -16,7 +16,7 @@ MEANINGS = {
     Verdict.PRESUMABLY_SATISFIED: "no obligation is open so far",
     Verdict.SATISFIED: "whatever follows",
 }
-"""What compiled languages say of the verdicts."""
+"""The texts of verdicts in compiled languages."""
 
 
 @dataclass(frozen=True, slots=True)

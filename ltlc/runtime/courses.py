@@ -53,7 +53,7 @@ class Course:
         invalid_because: Counter[str],
         session: int = 0,
     ) -> None:
-        """The session begins. Why steps were none is counted by whoever does this."""
+        """The session begins. The caller counts why there were no steps."""
         self.property = property_
         self.invalid_because = invalid_because
         self.verdict = Verdict.NOT_STARTED
@@ -101,7 +101,7 @@ class Course:
 
     @property
     def is_renewed(self) -> bool:
-        """Whether an age that was late is no more, and no step has been taken since."""
+        """Whether an age is no longer late, and no step has been taken since."""
         return bool(self._renewed)
 
     def renew(self, time: int) -> list[Change]:

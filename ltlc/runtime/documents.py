@@ -82,6 +82,8 @@ def _because(condition: Condition) -> dict[str, Any]:
     }
     if condition.age is not None:
         told["age"] = seconds(condition.age)
+    if condition.lasted is not None:
+        told["lasted"] = seconds(condition.lasted)
     if condition.element is not None:
         index, values = condition.element
         found = {name: json_value(value) for name, value in values}

@@ -25,7 +25,7 @@ from ltlc.runtime.times import Scale
 class ToldInstances(ToldSlices):
     """The instances that the messages of `openings` opened, and what to report of them.
 
-    It stands before what judges them, and tells instead of that.
+    It stands in front of what judges them, and reports instead.
     """
 
     noun = "message"

@@ -43,7 +43,7 @@ XML_HEAD = '<?xml version="1.0" encoding="UTF-8"?>\n'
 
 @dataclass(frozen=True, slots=True)
 class Case:
-    """A test case: what there is to say about it in a line, and if it failed in full.
+    """A test case: its result in a line, and in full if it failed.
 
     `element` is what a case has that did not pass: `failure`, `error`, or None. It
     stands at a `line` of a `file`, states a `requirement` (an object of JSON), and was

@@ -68,8 +68,9 @@ class Condition:
 
     They include its margin, and are None where a boolean is not compared to anything.
     The `relation` is that of numbers in order, or empty. If it asks for an `age`, that
-    is in ns, unless it has just passed the bound. If one `element` of arrays makes it
-    hold or fail, that is its index and, by the name of each array, its value.
+    is in ns, unless it has just passed the bound. If it fails since something has not
+    `lasted` long enough, that is how long it had, in ns. If one `element` of arrays
+    makes it hold or fail, that is its index and, by the name of each array, its value.
     """
 
     text: str
@@ -78,6 +79,7 @@ class Condition:
     right: Value = None
     relation: str = ""
     age: int | None = None
+    lasted: int | None = None
     element: tuple[int, tuple[tuple[str, Value], ...]] | None = None
 
 
@@ -254,7 +256,7 @@ class MonitoredProperty:
         return _with(self.excused, values)
 
     def shown(self, values: Sequence[Value]) -> Sequence[Value]:
-        """`values` with what signals are before they have samples, if that was said."""
+        """`values`, with what signals without samples are, if that is defined."""
         return _with((each for each in self.excused if not each.news), values)
 
     def missed(self, values: Sequence[Value]) -> Wanted | None:

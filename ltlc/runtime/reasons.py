@@ -45,6 +45,11 @@ def because(
     if moment.by_time and not any(number >= first for number in numbers):
         passed = (n for n, is_late in enumerate(late, first) if is_late)
         numbers = (*numbers, *passed)
+    for n, clock in enumerate(of.clocks, first):
+        if clock.bounds and not moment.by_time and _came_early(of, state, n, holds):
+            since = dues[n - first] - clock.bounds[bounds[n - first]]
+            found[n] = replace(found[n], lasted=moment.time - since)
+            numbers = (*numbers, *({n} - {*numbers}))
     elements = {each.condition: each for each in of.elements}
     return tuple(
         with_element(of, elements[n], given, found[n]) if n in elements else found[n]
@@ -52,10 +57,29 @@ def because(
     )
 
 
+def _came_early(
+    of: MonitoredProperty, state: int, clock: int, holds: Sequence[bool]
+) -> bool:
+    """Whether a step leads elsewhere if the clock with this number had run out before.
+
+    It has not; `holds` has the conditions at the step. A clock step that asks nothing
+    is one of this clock.
+    """
+    if holds[clock]:
+        return False
+    held, last = of.held_edges[state], range(len(holds) - len(of.clocks), len(holds))
+    in_time = _targets(of, held, dict.fromkeys(last, False) | {clock: True})
+    if held < 0:
+        in_time -= _targets(of, held, dict.fromkeys(last, False))
+    now = dict(enumerate(holds))
+    target, then = _targets(of, of.edges[state], now), now | {clock: True}
+    return any(_targets(of, of.edges[s], then) != target for s in in_time - {state})
+
+
 def _of_clock(clock: Clock, due: int, time: int, passed: int) -> Condition:
     """What a clock that is `due` then, so many bounds of which have passed, decides.
 
-    An age that has just passed its bound is not told.
+    An age that has just passed its bound is not reported.
     """
     age = None
     if clock.is_age and time > due + 1:

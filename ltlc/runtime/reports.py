@@ -49,7 +49,7 @@ LONGEST = 200
 def value_text(value: Value) -> str:
     """A value as the property language writes it; an array cut.
 
-    A double exactly; one that is a binary32 with the fewest digits that say which.
+    A double exactly; one that is a binary32 with the fewest digits that identify it.
     """
     if value is None:
         return "no value"
@@ -144,6 +144,8 @@ def condition_text(property_: MonitoredProperty, condition: Condition) -> str:
         parts.append(compared)
     if condition.age is not None:
         parts.append(f"the age is {span_text(condition.age)}")
+    if condition.lasted is not None:
+        parts.append(f"{span_text(condition.lasted)} so far")
     if condition.element is not None:
         index, values = condition.element
         parts += [f"{name}[{index}] is {value_text(value)}" for name, value in values]
@@ -193,7 +195,7 @@ def summary(session: Session) -> str:
 
 
 def unseen(session: Session) -> list[str]:
-    """What there is to say about messages that came and went between two ticks."""
+    """A note on messages that came and went between two ticks."""
     return [
         f"no tick saw {count} of {counted(session.messages[topic], 'message')} "
         f"on {printable(topic)}"
@@ -203,7 +205,7 @@ def unseen(session: Session) -> list[str]:
 
 
 def sentence(session: Session, track: Track) -> str:
-    """What there is to say about a property, in one line."""
+    """The result of a property, in one line."""
     verdict = track.verdict.value.replace("_", " ")
     parts = [f"{printable(track.property.label)}: {verdict}{_since(session, track)}"]
     parts += explanation(session, track)
@@ -219,7 +221,7 @@ def _since(session: Session, track: Track) -> str:
 
 
 def explanation(session: Session, track: Track) -> list[str]:
-    """Remarks on a verdict: what is owed, what never came, what was invalid."""
+    """Remarks on a verdict: what is open, what never came, what was invalid."""
     remarks = []
     if track.verdict is Verdict.NOT_STARTED and not track.invalid:
         remarks += waiting_for(session, track)

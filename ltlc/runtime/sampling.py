@@ -12,6 +12,9 @@ from typing import Any
 from ltlc.runtime.functions import divide, doubles_of, elements_of, number
 from ltlc.runtime.times import seconds
 
+VECTOR = ("x", "y", "z", "w")
+"""What the components of vectors and orientations are called."""
+
 Value = Any
 """A float or int, a bool, a str, or a tuple of such; None stands for 'no value'."""
 
@@ -55,7 +58,8 @@ class New:
     signal: str
 
     def __str__(self) -> str:
-        return f"new {self.signal}"
+        whole, _, part = self.signal.rpartition(".")
+        return f"new {whole if part in VECTOR else self.signal}"
 
 
 Wanted = Input | Recent | Slope | New

@@ -1,4 +1,4 @@
-"""Which ids came, which of them are kept, and what their slices say together."""
+"""Which ids came, which of them are kept, and the verdict of their slices together."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Slice(Course):
 
     known: its samples, and those that all slices share
     counted: the verdict as which it was counted
-    number: which one it is of those that were kept, 0 before it is
+    is_kept: whether it is one of those that are
     scheduled: up to when time does not change it, as it was noted
     lacks_beginning: whether messages before its first one may have found no place
     more: how many others go on like it, and are not kept
@@ -33,11 +33,11 @@ class Slice(Course):
         "counted",
         "heard",
         "id",
+        "is_kept",
         "known",
         "lacks_beginning",
         "latest",
         "more",
-        "number",
         "scheduled",
     )
 
@@ -53,7 +53,8 @@ class Slice(Course):
         self.id = id_
         self.known = known
         self.counted = Verdict.NOT_STARTED
-        self.number = self.more = 0
+        self.is_kept = False
+        self.more = 0
         self.scheduled = NEVER
         self.lacks_beginning = False
         self.latest: dict[str, Value] | None = None
@@ -109,14 +110,19 @@ class Ids:
             self.messages += 1
         return id_
 
-    def find_place(self, id_: Id) -> bool:
-        """Whether the slice of an id can begin: it has a place, and is not decided."""
-        if id_ in self.satisfied or id_ in self.violated:
-            return False
-        if self.limit is not None and self._kept() >= self.limit:
-            self.left_out += 1
-            return False
-        return True
+    def is_decided(self, id_: Id) -> bool:
+        """Whether the slice of an id was decided."""
+        return id_ in self.satisfied or id_ in self.violated
+
+    def find_place(self) -> bool:
+        """Whether another slice can begin; if not, a message is left out."""
+        has_place = self.has_place()
+        self.left_out += not has_place
+        return has_place
+
+    def has_place(self) -> bool:
+        """Whether there is a place for another slice."""
+        return self.limit is None or self._kept() < self.limit
 
     def _kept(self) -> int:
         """How many ids are kept."""
@@ -130,7 +136,7 @@ class Ids:
     def keep(self, one: Slice) -> None:
         """A slice is kept from now on."""
         self.births += 1
-        one.number = self.births
+        one.is_kept = True
         self.slices[one.id] = one
         self.forgotten.discard(one.id)
 
@@ -192,11 +198,9 @@ class Messages(Ids):
         self.messages += 1
         return self.messages
 
-    def find_place(self, id_: Id) -> bool:
-        """Whether an instance can open: it has a place."""
-        has_place = self.limit is None or len(self.slices) < self.limit
-        self.left_out += not has_place
-        return has_place
+    def _kept(self) -> int:
+        """How many instances are open."""
+        return len(self.slices)
 
     @property
     def well(self) -> int:

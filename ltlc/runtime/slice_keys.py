@@ -22,7 +22,7 @@ Id = bool | int | float | str
 
 
 def id_of(value: Value) -> Id | None:
-    """A value as an id; NaN is no id, and a whole number is an integer."""
+    """A value as an id; NaN is not an id, and a whole number is an integer."""
     if value.__class__ is tuple:
         return bytes_text(bytes(map(int, value)))
     if value.__class__ is not float:

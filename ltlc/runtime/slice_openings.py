@@ -33,7 +33,7 @@ class Openings:
         self.opener = opener
         self.messages = messages
         self.before = before
-        before.number = -1  # it is none of those that are kept
+        before.is_kept = True  # beside the instances
         is_timed = before.property.timed
         self._quick = attrgetter("state", "due") if is_timed else attrgetter("state")
         self._uncounted: Counter[str] = Counter()
@@ -94,7 +94,7 @@ class Openings:
     def open(self) -> Slice | None:
         """A message comes: an instance that has had no step; None without a place."""
         number = self.messages.number()
-        if not self.messages.find_place(number):
+        if not self.messages.find_place():
             return None
         one = self.before.fork()
         one.id, one.invalid_because, one.scheduled = number, self._uncounted, NEVER
@@ -112,7 +112,7 @@ class Openings:
 
     def alike(self) -> list[Slice]:
         """Those instances that go on like an earlier one, which now stands for them."""
-        # Clocks that were set at different times tell most of them apart.
+        # Clocks that were set at different times distinguish most of them.
         monitors = [one.monitor for one in self.messages.slices.values()]
         if len(set(map(self._quick, monitors))) == len(monitors):
             return []

@@ -40,7 +40,9 @@ class Owed:
 
 
 def id_text(id_: Id) -> str:
-    """An id as a reader knows it."""
+    """An id as a reader knows it: a text that would not stand alone in quotes."""
+    if isinstance(id_, str) and (not id_ or any(mark in id_ for mark in ',;:"')):
+        return printable(json.dumps(id_, ensure_ascii=False))
     return printable(str(id_).lower() if isinstance(id_, bool) else str(id_))
 
 
@@ -105,7 +107,7 @@ class ToldSlices:
         return f"{self.cut.variable} ="
 
     def owed(self) -> list[Owed]:
-        """What is owed, that which can wait for the shortest time first."""
+        """The open obligations, the most urgent first."""
         now = self.session.time
         found = []
         for one in self.ids.slices.values():
@@ -134,7 +136,7 @@ class ToldSlices:
         return f"{id_text(id_)} at {self._scale.text(each.failure.time)}{lacks}"
 
     def untold(self) -> Iterator[tuple[str, str]]:
-        """What there is to tell of each violation that was not told, also as JSON."""
+        """The report on each violation that was not reported yet, also as JSON."""
         violated = self.ids.violated
         while self._told < len(violated):
             told = [*islice(violated.items(), self._told, None)]
@@ -163,7 +165,7 @@ class ToldSlices:
         return sum(one.verdict is Verdict.NOT_STARTED for one in slices)
 
     def remarks(self) -> list[str]:
-        """What else there is to say: what is owed, what came, what was left out."""
+        """Further remarks: what is open, what came, what was omitted."""
         told = []
         if open_ := self._owed_in_all():
             listed = [self._owed(each) for each in self.owed()]
@@ -180,11 +182,11 @@ class ToldSlices:
         return f"{self._owing(each)}{left}{LACKS if each.lacks_beginning else ''}"
 
     def _owing(self, each: Owed) -> str:
-        """For what something is owed, and since when."""
+        """What an obligation is open for, and since when."""
         return f"{id_text(each.id)} since {self._scale.text(each.since.time)}"
 
     def _more(self) -> Iterator[str]:
-        """What there is to say of messages."""
+        """Remarks on messages."""
         if waiting := self._waiting():
             yield f"{waiting} not started"
         yield messages_text(self.ids.messages)
@@ -261,7 +263,7 @@ def listed_text(told: Sequence[str], number: int) -> str:
 
 
 def owed_report(each: Owed, zero: int | None) -> dict[str, Any]:
-    """What is owed, in the JSON document of `ltlc run`."""
+    """The open obligations, in the JSON document of `ltlc run`."""
     return {
         "id": json_value(each.id),
         "open_since": moment_report(each.since, zero),

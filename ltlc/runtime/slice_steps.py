@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from heapq import heappop, heappush
 
 from ltlc.runtime.courses import Course
-from ltlc.runtime.properties import Change, Moment
+from ltlc.runtime.properties import Change, Moment, Monitor
 from ltlc.runtime.sampling import Value, mark
 from ltlc.runtime.session import Session
 from ltlc.runtime.slice_ids import Ids, Slice
@@ -50,12 +50,14 @@ class Slices(ToldSlices):
         self._is_recounted = False
         self._goes_by_time = track.property.timed or bool(track.property.events)
         self._last_heard: dict[str, int] = {}
-        self._can_reuse = not (track.property.scopes or track.property.kept)
-        self._spare: Slice | None = None
-        self._due: list[tuple[int, int, Slice]] = []
+        self._due: list[tuple[int, Id]] = []
         self._gone: dict[str, set[Id]] = {
             topic: set() for topic, key in cut.keys.items() if key.gone is not None
         }
+        of = track.property
+        has_more = bool(of.scopes or of.kept or of.events or cut.ages)
+        can_pass = as_new and not has_more and session.plan.rate is None
+        self._probe = self._fresh() if can_pass else None
 
     @property
     def left_out(self) -> int:
@@ -95,7 +97,9 @@ class Slices(ToldSlices):
             if one is not None:
                 ids.messages += 1
             elif (id_ := ids.counted(value)) is not None:
-                one = ids.slices.get(id_) or self._new(time, id_)
+                one = ids.slices.get(id_)
+                if one is None and not self._passes(time, id_, part, values):
+                    one = self._new(time, id_)
             if one is not None:
                 self._give(time, one, part, values)
         if self._is_recounted or self.openings is not None:
@@ -158,7 +162,7 @@ class Slices(ToldSlices):
                 self._give(time, one, part, (True,))
 
     def _is_before(self, one: Slice) -> bool:
-        """Whether this is no slice, but the run before any instance."""
+        """Whether this is the run before any instance, rather than a slice."""
         return self.openings is not None and one is self.openings.before
 
     # Slices begin.
@@ -174,18 +178,52 @@ class Slices(ToldSlices):
 
     def _new(self, time: int, id_: Id) -> Slice | None:
         """The slice of an id begins; None if it is decided, or finds no place."""
-        if not self.ids.find_place(id_):
+        if self.ids.is_decided(id_) or not self.ids.find_place():
             return None
-        one, self._spare = self._spare, None
-        if one is None:
-            one = self._born(time, id_)
-        else:
-            one.id, one.known = id_, self.cut.known(id_)
-            one.steps, one.verdict = 0, Verdict.NOT_STARTED
+        one = self._born(time, id_)
         one.counted, one.lacks_beginning = self.ids.calm, self.ids.left_out > 0
         if id_ in self.ids.forgotten:  # and all was well
             one.verdict = Verdict.PRESUMABLY_SATISFIED
         return one
+
+    def _fresh(self) -> Monitor:
+        """A monitor that has had no step."""
+        of = self.track.property
+        return of.monitor(self._begins) if of.timed else of.monitor()
+
+    def _passes(self, time: int, id_: Id, part: Part, given: Sequence[Value]) -> bool:
+        """Whether a slice that is not kept is as new after a message; it has taken it.
+
+        Most messages are like that, and one monitor steps for all of these slices.
+        """
+        ids, whole, probe = self.ids, self.track, self._probe
+        if probe is None or whole.verdicts is not None or not part.is_step:
+            return False
+        if (
+            ids.calm is Verdict.NOT_STARTED
+            or ids.is_decided(id_)
+            or not ids.has_place()
+        ):
+            return False
+        known = self.cut.known(id_)
+        mark(known, part.news, is_new=True)
+        part.update.take(known, time, given)
+        values = self._look(known)
+        if None in values:
+            return False
+        if whole.property.timed:
+            verdict = probe.step(time, *values)
+        else:
+            verdict = probe.step(*values)
+        is_well = verdict is Verdict.PRESUMABLY_SATISFIED and not probe.invalid
+        is_still = not whole.property.timed or probe.due >= NEVER
+        if not (is_well and is_still and probe.state in self.as_new):
+            self._probe = self._fresh()
+            return False
+        whole.steps += 1
+        if ids.limit is None:
+            ids.forgotten.add(id_)
+        return True
 
     def _born(self, time: int, id_: Id) -> Slice:
         """A slice begins: ages of what is its own count from now."""
@@ -272,8 +310,8 @@ class Slices(ToldSlices):
         until = min(time, self.session.end)
         while (last := self.soon) < until:
             while self._due and self._due[0][0] == last:
-                one = heappop(self._due)[2]
-                if self._goes_on(one) and one.scheduled == last:
+                one = self._kept(heappop(self._due)[1])
+                if one is not None and one.scheduled == last:
                     one.scheduled = NEVER
                     one.hold(last + 1)
                     self._settle(one)
@@ -281,9 +319,11 @@ class Slices(ToldSlices):
             self._tell(last + 1, changes, by_time=True)
         return changes
 
-    def _goes_on(self, one: Slice) -> bool:
-        """Whether a slice has not been dropped."""
-        return self._is_before(one) or self.ids.slices.get(one.id) is one
+    def _kept(self, id_: Id) -> Slice | None:
+        """The slice of an id, or the run before instances; None if it was dropped."""
+        if self.openings is not None and id_ == self.openings.before.id:
+            return self.openings.before
+        return self.ids.slices.get(id_)
 
     def advance(self, time: int) -> list[Change]:
         """Take what is due by `time`."""
@@ -294,38 +334,37 @@ class Slices(ToldSlices):
     def _settle(self, one: Slice) -> None:
         """Keep and count a slice, unless it is decided, or as new."""
         verdict = one.verdict
-        has_started = verdict is not Verdict.NOT_STARTED
-        if not has_started and self.openings and self.openings.withdraws(one):
+        if verdict is Verdict.NOT_STARTED and self._withdraws(one):
             self._drop(one)
             return
         if verdict is not one.counted:
             self._recount(one)
-        if self.as_new and self.is_as_new(one):
+        if one.monitor.state in self.as_new and self.is_as_new(one):
             self._forget(one)
             return
-        if not one.number:
+        if not one.is_kept:
             self.ids.keep(one)
         if one.decided_at is not None and not self._is_before(one):
             self._drop(one)
             self.ids.decide(one, one.decided_at)
         elif self._goes_by_time and (until := one.until) < one.scheduled:
             one.scheduled = until
-            heappush(self._due, (until, one.number, one))
+            heappush(self._due, (until, one.id))
             self.soon = self._due[0][0]
+
+    def _withdraws(self, one: Slice) -> bool:
+        """Whether a message opened nothing, for there was no step."""
+        return self.openings is not None and self.openings.withdraws(one)
 
     def _recount(self, one: Slice) -> None:
         self.ids.count(one)
         self._is_recounted = True
 
     def _forget(self, one: Slice) -> None:
-        """Drop a slice that is as new; most were never kept."""
-        if one.number or one.scopes:
-            self._drop(one)
-            one.number, one.scheduled, one.monitor.invalid = 0, NEVER, 0
+        """Drop a slice that is as new."""
+        self._drop(one)
         if self.ids.limit is None:
             self.ids.forgotten.add(one.id)
-        if self._can_reuse:
-            self._spare = one
 
     def is_as_new(self, one: Slice) -> bool:
         """Whether a slice need not be kept."""

@@ -158,7 +158,7 @@ class Paces:
         """Messages came in on `topics`, with samples for the next tick."""
         for topic in topics:
             self.taken[topic] += 1
-        # A topic that was heard before has nobody left who waits for it.
+        # Nothing waits for a topic that was heard before.
         first = {topic for topic in topics if self.taken[topic] == 1}
         if first:
             waiting = self.waiting

@@ -1,4 +1,4 @@
-"""Which letters exist: the atoms of a property are not free where they speak of the same number.
+"""Which letters exist: the atoms of a property are not independent if they are about the same number.
 
 `d < 1` and `d > 1` never hold together. Atoms that constrain one another form a group, and the letters that exist are
 the products of the groups' valuations: thirty thresholds on one signal have thirty-one valuations, not 2^30.

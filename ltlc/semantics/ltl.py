@@ -190,7 +190,7 @@ def size(formula: Formula) -> int:
 
 
 def is_propositional(formula: Formula) -> bool:
-    """Whether `formula` speaks of the current step only: it contains neither `Next` nor `Until`."""
+    """Whether `formula` is about the current step only: it contains neither `Next` nor `Until`."""
     return not any(isinstance(f, Next | Until) for f in subformulas(formula))
 
 

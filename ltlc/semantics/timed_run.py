@@ -68,7 +68,7 @@ class Counter:
 class TimedRun:
     """What trackers and `counts` say along one run; the session, from which ages count, began at `session`.
 
-    `retake` has the say in what is held at a clock step, where letters depend on values taken at openings.
+    `retake` decides what is held at a clock step, if letters depend on values taken at openings.
     """
 
     def __init__(

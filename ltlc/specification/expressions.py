@@ -7,7 +7,7 @@ Vectors do not occur here: the resolver writes them out as their components.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import Enum
 from typing import assert_never
 
@@ -110,6 +110,12 @@ class Field:
         depth = self.path.index(Each()) if Each() in self.path else len(self.path)
         return Field(self.topic, self.message, self.path[:depth])
 
+    def is_beside(self, other: Field) -> bool:
+        """Whether two arrays are fields of one array of messages, or are side by side in a message."""
+        if Each() in self.path or Each() in other.path:
+            return self.list == other.list
+        return self.topic == other.topic and self.path[:-1] == other.path[:-1]
+
 
 @dataclass(frozen=True, slots=True)
 class Signal:
@@ -118,7 +124,8 @@ class Signal:
     `name` is how the author writes it (`robot.velocity`, `robot_position.x`), and how a recording's column is headed.
     `definition` is a field of a topic's messages, or an expression over other signals, which has a sample where one of
     these has, with `when` only where that holds; a recording may give the signal itself instead. Before its first
-    sample it is `otherwise`, if that is not None. Two signals of one specification with the same name are equal.
+    sample it is `otherwise`, if that is not None. Two signals of one specification with the same name are equal. The
+    component of a vector or an orientation has the name of the `whole`.
     """
 
     name: str
@@ -126,9 +133,15 @@ class Signal:
     definition: Field | Expression
     when: When | None = None
     otherwise: Number | Boolean | String | None = None
+    whole: str = field(default="", compare=False)
 
     def __hash__(self) -> int:
         return hash(self.name)
+
+    @property
+    def heard(self) -> str:
+        """The name that its messages go by."""
+        return self.whole or self.name
 
     @property
     def is_message(self) -> bool:

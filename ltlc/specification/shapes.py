@@ -21,7 +21,7 @@ from ltlc.specification.specification import PropertySpecification
 _NAMED: dict[type, str] = {ltl.Atom: "name", Signal: "name", Field: "topic", Match: "value", Parallel: "value"}
 """What has a name that may differ, and the field that it is in."""
 
-_SHOWN = frozenset({"label", "file", "line", "text", "obligations"})
+_SHOWN = frozenset({"label", "file", "line", "text", "obligations", "whole"})
 """Fields that reports show and that decide nothing."""
 
 

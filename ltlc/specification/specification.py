@@ -104,7 +104,7 @@ class Instances:
     def mark(self) -> Signal:
         """A signal that no message has; it stands for the message from which on the property is judged."""
         _, field = next(fields(self.signal))
-        name = f"{self.signal.name} (this one)"
+        name = f"{self.signal.heard} (this one)"
         return Signal(name, ValueType.BOOLEAN, replace(field, topic=name, path=()))
 
     @property

@@ -97,7 +97,7 @@ def _written(expression: Expression) -> tuple[str, int]:
         case Opening(signal, scope, label):
             return f"@{{{signal.name}, {opening_text(scope, label)}}}", _VALUE
         case New(signal):
-            return f"new {signal.name}", _VALUE
+            return f"new {signal.heard}", _VALUE
         case Slope(signal):
             return f"slope({signal.name})", _VALUE
         case Element(array):

@@ -20,12 +20,12 @@ def news(signal: Signal) -> News:
 
 def message(signal: Signal) -> News:
     """A message on the topic of `signal`, from which ages count: unlike `new signal`, also where it makes no step."""
-    return News(f"message on {signal.name}")
+    return News(f"message on {signal.heard}")
 
 
 def age(signal: Signal, duration: Nanoseconds, *, strictly: bool) -> Age:
     """`age(signal) <= duration`, or `<`."""
-    name = f"age({signal.name}) {'<' if strictly else '<='} {duration_text(duration)}"
+    name = f"age({signal.heard}) {'<' if strictly else '<='} {duration_text(duration)}"
     return Age(name, message(signal), duration - strictly)
 
 

@@ -30,10 +30,18 @@ _SCALARS |= {"bool": "bool", "char *": "&str", "float": "f32", "double": "f64", 
 
 
 def written(
-    text: str, header: str, source: str, properties: Sequence[Property], timeout: Nanoseconds | None = None
+    text: str,
+    header: str,
+    source: str,
+    properties: Sequence[Property],
+    rate: float | None = None,
+    timeout: Nanoseconds | None = None,
 ) -> Sequence[WrittenInC | Difference]:
-    """What is written of each of `properties` in a file that has to say what a header and a source file say in C."""
-    parts = written_in_c(header, source, properties, None, timeout, is_grouped=False)
+    """What is written of each of `properties` in a file that has to say what a header and a source file say in C.
+
+    `rate`, in Hz, and `timeout` are those of their specification.
+    """
+    parts = written_in_c(header, source, properties, rate, timeout, is_grouped=False)
     read = next((part.definitions for part in parts if isinstance(part, WrittenInC)), None)
     try:
         if read is not None:
@@ -61,9 +69,11 @@ class _File:
         self.c, self.prefix = Plain(c), f"{c.prefix}_"
         self.structs = self.c.structs
         self.names = self._names(labels)
-        shared = {"samples": "Samples", "signals": "Signals", "monitors": "Monitors"}
-        self.properties = dict(zip((each for each in self.structs if each not in shared), self.names, strict=True))
-        self.types = {**self.properties, **shared}
+        self.kept = self.c.kept_by()
+        self.optional = ("take", "go_on") if "take" in self.c.functions else ()
+        self.properties = dict(zip(self.kept, self.names, strict=True))
+        self.types = {each: self.properties.get(each) or each[0].upper() + each[1:] for each in self.structs}
+        self.sizes = self.c.sizes()
 
     def _names(self, labels: Sequence[str]) -> list[str]:
         """What properties are called, each of which has to recall its label."""
@@ -100,10 +110,12 @@ class _File:
         verdicts = (Verdict.NOT_STARTED, *(each for each in Verdict if each is not Verdict.NOT_STARTED))
         derive = "#[derive(Clone, Copy, Debug"
         named = "".join(f"{each.name.title().replace('_', '')}," for each in verdicts)
-        fields = "".join(self._sampled(self.structs["samples"].decls))
+        sampled = self._sampled(self.structs["samples"].decls)
+        fields = "".join(f"pub {name}: {type_}," for name, type_, _ in sampled)
         yield from _tokens(f"""
             #![allow(dead_code, non_camel_case_types, non_snake_case, unused_variables)]
             pub const NEVER: i64 = {NEVER};
+            {"".join(f"pub const {name}: u32 = {count};" for name, count in self.sizes.items())}
             {derive}, PartialEq, Eq)] pub enum Verdict {{ {named} }}
             {derive}, PartialEq, Eq)] pub struct Judgement {{
                 pub verdict: Verdict, pub since: i64, pub steps: u32, pub invalid: u32, }}
@@ -118,33 +130,39 @@ class _File:
                 yield from self._function(name)
         for short, struct in self.structs.items():
             if short != "samples":
-                made = "pub " if short == "monitors" else ""
+                is_read = short in _TABLES and short not in self.properties
+                made, of = "pub " if short == "monitors" or is_read else "", "pub " if is_read else ""
                 members = [(each.name, self._type(each), self._first(each)) for each in struct.decls]
                 yield from _tokens(f"""
-                    {derive})] {made}struct {self.types[short]} {{ {"".join(f"{n}: {t}," for n, t, _ in members)} }}
+                    {derive})] {made}struct {self.types[short]} {{ {"".join(f"{of}{n}: {t}," for n, t, _ in members)} }}
                     impl {self.types[short]} {{ const NEW: Self = Self {{
                         {"".join(f"{n}: {f}," for n, _, f in members)} }};""")
+                begun = self.c.begins(short)
+                if begun is not None:
+                    yield from _tokens("pub const fn new() -> Self")
+                    yield _Body(("new", begun))
                 yield from self._of_monitors() if short == "monitors" else ()
                 for name in own:
                     if self.c.owner(name) == short:
                         yield from self._function(name)
                 yield "}"
-        yield from _tokens("impl Default for Monitors { fn default() -> Self { Self::new() } }")
+                if begun is not None:
+                    yield from _tokens(
+                        f"impl Default for {self.types[short]} {{ fn default() -> Self {{ Self::new() }} }}"
+                    )
 
     def _called(self) -> set[str]:
         """The functions that files share and that this one has."""
         return {name for word, name in zip(self.found, self.found[1:], strict=False) if word == "fn"}
 
     def _of_monitors(self) -> Iterator[str | _Body]:
-        """What makes monitors ready, and what asks them; without clocks, nothing depends on the time."""
+        """What asks monitors; without clocks, nothing depends on the time."""
         cases = "".join(
             f"""Property::{type_} => Judgement {{ verdict: self.{name}.verdict, since: self.{name}.since,
-                steps: self.signals.together.wrapping_add(self.{name}.apart).wrapping_sub(self.{name}.invalid),
+                steps: self.{kept}.together.wrapping_add(self.{name}.apart).wrapping_sub(self.{name}.invalid),
                 invalid: self.{name}.invalid, }},"""
-            for name, type_ in self.properties.items()
+            for (name, type_), kept in zip(self.properties.items(), self.kept.values(), strict=True)
         )
-        yield from _tokens("pub const fn new() -> Self")
-        yield _Body(("new", self.c.functions[f"{self.prefix}init"]))
         yield from _tokens(
             f"pub fn judgement(&self, property: Property) -> Judgement {{ match property {{ {cases} }} }}"
         )
@@ -155,18 +173,31 @@ class _File:
     def _function(self, name: str) -> Iterator[str | _Body]:
         owner, function = self.c.owner(name), self.c.functions[name]
         short = self.c.short(name)
-        if owner == "monitors" and short in ("init", "verdict_of", "steps_of", "invalid_of", "since_of"):
+        apart = ("verdict_of", "steps_of", "invalid_of", "since_of", "left_out_of")
+        if owner is not None and (short in apart or function == self.c.begins(owner)):
             return
         first, *rest = parameters(function)
-        given = [f"{each.name}: {self._type(each)}" for each in (rest if owner else (first, *rest))]
-        given = [each.replace("samples: Samples", "samples: &Samples") for each in given]
+        given = [f"{each.name}: {self._parameter(name, each)}" for each in (rest if owner else (first, *rest))]
         own = ["&self" if "const" in first.type.type.quals else "&mut self"] if owner else []
         public = "" if "static" in function.decl.storage else "pub "
-        result = _SCALARS[type_text(function.decl.type)]
+        result = self._result(type_text(function.decl.type))
         yield from _tokens(
             f"{public}fn {self.c.method(name)}({', '.join([*own, *given])}) {f'-> {result}' if result else ''}"
         )
         yield _Body((name, function))
+
+    def _parameter(self, function: str, node: Decl) -> str:
+        """The type of what a function is given: of samples, which there may be or not, or of another struct."""
+        type_ = self._type(node)
+        borrowed = f"&{type_}" if type_ in self.types.values() else type_
+        return f"Option<{borrowed}>" if node.name == "samples" and function in self.optional else borrowed
+
+    def _result(self, type_: str) -> str:
+        """The type of what a function returns, which is none where C has NULL."""
+        short = self.c.short(type_.removesuffix(" *"))
+        if short in self.types:
+            return f"Option<&{self.types[short]}>"
+        return "Verdict" if short == "verdict" else _SCALARS[type_]
 
     def _type(self, node: Node) -> str:
         """How a type is written."""
@@ -176,8 +207,9 @@ class _File:
 
     def _written(self, bare: str, whole: str) -> str:
         short = self.c.short(bare)
-        if array := re.fullmatch(r"(.*)\[(\d+)\]", whole):
-            return f"[{self._written(array[1].removesuffix(' *'), array[1])}; {array[2]}]"
+        if array := re.fullmatch(r"(.*)\[(\w+)\]", whole):
+            count = array[2] if array[2].isdigit() else f"{self.c.constant(array[2])} as usize"
+            return f"[{self._written(array[1].removesuffix(' *'), array[1])}; {count}]"
         if short in PLURALS:
             return f"&[{_SCALARS[PLURALS[short]]}]"
         return self.types.get(short) or _SCALARS[whole]
@@ -191,18 +223,28 @@ class _File:
         return self._zero(type_)
 
     def _zero(self, type_: str) -> str:
+        if type_ == self.types["samples"]:
+            given = self._sampled(self.structs["samples"].decls)
+            members = (f"{name}: {'false' if is_told else 'None'}" for name, _, is_told in given)
+            return f"Samples {{ {', '.join(members)} }}"
         if type_ in self.types.values():
             return f"{type_}::NEW"
         simple = {"&str": '""', "bool": "false", "f32": "0.0", "f64": "0.0", "Verdict": "Verdict::NotStarted"}
         return "&[]" if type_.startswith("&[") else simple.get(type_, "0")
 
-    def _sampled(self, members: Sequence[Decl]) -> Iterator[str]:
-        """Each value that may come, and each message; a flag stands for that it comes."""
+    def _sampled(self, members: Sequence[Decl]) -> Iterator[tuple[str, str, bool]]:
+        """Each value that may come, and each message, with its type, and whether it is a message.
+
+        A flag says that a value comes.
+        """
         values = [each for each in members if each.bitsize is None and each.name != "nothing"]
         told = [each for each in members if each.bitsize is not None][len(values) :]
-        yield from (f"pub {each.name}: Option<{self._type(each)}>," for each in values)
-        yield from (f"pub {each.name}: bool," for each in told)
+        yield from ((each.name, f"Option<{self._type(each)}>", False) for each in values)
+        yield from ((each.name, "bool", True) for each in told)
 
+
+_TABLES = ("ids", "slice", "instances", "instance", "violation")
+"""The structs of tables, whose members can be read."""
 
 _WITHOUT = {
     "begin": "pub fn begin(&mut self, time: i64) -> bool { self.pass(time) }",

@@ -13,12 +13,12 @@ from ltlc.semantics.verdicts import Verdict
 _TOKEN = re.compile(
     r"\s+|//[^\n]*"
     r'|(?P<token>"(?:[^"\\]|\\u\{[0-9a-f]+\})*"|0x[0-9a-f_]+|\d[\d_]*(?:\.\d+)?(?:e[+-]?\d+)?(?:[iuf]\d+)?|\w+(?:::\w+)*!?'
-    r"|\.\.|&&|\|\||[<>=!+]=|->|=>|[-+*/%<>=!&|.,;:()\[\]{}#'$])"
+    r"|\.\.|\^=|&&|\|\||[-<>=!+]=|->|=>|[-+*/%<>=!&|.,;:()\[\]{}#'$])"
 )
-_LEVELS = (("||",), ("&&",), ("<", "<=", ">", ">=", "==", "!="), ("+", "-"), ("*", "/", "%"))
-_CASTS = {"f64": "double", "i64": "int64_t", "u64": "uint64_t"}
+_LEVELS = (("||",), ("&&",), ("<", "<=", ">", ">=", "==", "!="), (">>",), ("+", "-"), ("*", "/", "%"))
+_CASTS = {"f64": "double", "i64": "int64_t", "u32": "uint32_t", "u64": "uint64_t"}
 _WORDS = {"f64::INFINITY": "INFINITY", "f64::NAN": "NAN", "i64::MAX": "INT64_MAX", "i64::MIN": "INT64_MIN"}
-_WORDS |= {"i32::MIN": "INT32_MIN", "Self::NEW": "Self::NEW"} | {
+_WORDS |= {"i32::MIN": "INT32_MIN", "u32::MAX": "UINT32_MAX", "None": "NULL", "Self::NEW": "Self::NEW"} | {
     f"Verdict::{v.name.title().replace('_', '')}": v.name for v in Verdict
 }
 
@@ -108,21 +108,29 @@ class Parser:
 
     def _if(self) -> Tree:
         self._take("if")
-        guard, then = self._expression(), self.block()
+        guard, then = self._given() if self._next == "let" else self._expression(), self.block()
         if not self._has("else"):
             return "if", guard, then, ()
         return "if", guard, then, (self._if(),) if self._next == "if" else self.block()
 
+    def _given(self) -> Tree:
+        """Whether there are samples, which a block is about."""
+        for right in ("let", "Some", "(", "samples", ")", "=", "samples"):
+            self._take(right)
+        return "!=", "samples", "NULL"
+
     def _simple(self) -> Tree:
         """An assignment, or an expression by itself; what a counter wraps around is added to it."""
         place = self._expression()
-        if self._has("+="):
-            return "+=", place, self._expression()
+        if self._next in ("+=", "-=", "^="):
+            return self._take(), place, self._expression()
         if not self._has("="):
             return "do", place
         match self._expression():
             case ("call", ".wrapping_add", same, more) if same == place:
                 return "+=", place, more
+            case ("call", ".wrapping_mul", same, factor) if same == place:
+                return "*=", place, factor
             case value:
                 return "=", place, value
 
@@ -131,9 +139,17 @@ class Parser:
         if level == len(_LEVELS):
             return self._cast()
         left = self._expression(level + 1)
-        while self._next in _LEVELS[level]:
-            left = joined(self._take(), left, self._expression(level + 1))
+        while operator := self._operator(level):
+            left = joined(operator, left, self._expression(level + 1))
         return left
+
+    def _operator(self, level: int) -> str:
+        """The operator of a level that comes next, if one does; `>>` is two tokens, as it is in types."""
+        if _LEVELS[level] != (">>",):
+            return self._take() if self._next in _LEVELS[level] else ""
+        is_next = self._tokens[self.at : self.at + 2] == [">", ">"]
+        self.at += 2 * is_next
+        return ">>" if is_next else ""
 
     def _cast(self) -> Tree:
         """What is made another type, which binds less tightly than `-`; an index is what it is."""
@@ -148,6 +164,10 @@ class Parser:
             return self._take(), self._unary()
         if self._has("&"):
             self._has("mut")
+            if self._has("{"):  # a copy
+                found = self._expression()
+                self._take("}")
+                return found
             return ("{}", *self._list("]")) if self._has("[") else self._unary()
         return self._postfix()
 
@@ -178,6 +198,10 @@ class Parser:
             found = self._expression()
             self._take(")")
             return found
+        if token == "Some":
+            return self._primary()
+        if token == "Monitors::new":
+            return "call", token, *(self._take("(") and self._list(")"))
         if token == "if":
             guard = self._expression()
             return "?", guard, self._side(), self._take("else") and self._side()
@@ -203,7 +227,7 @@ def _method(of: Tree, name: str, arguments: tuple[Tree, ...]) -> Tree:
             return name, field
         case "is_nan", _, ():
             return "nan", of
-        case "len", _, ():
-            return ".", of, "length"
+        case "len" | "as_ptr", _, ():
+            return ".", of, {"len": "length", "as_ptr": "elements"}[name]
         case _:
             return "call", f".{name}", of, *arguments

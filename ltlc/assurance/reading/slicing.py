@@ -45,7 +45,7 @@ def _of_ids(slicing: Slicing, machine: Machine, specification: PropertySpecifica
 def _of_messages(instances: Instances) -> dict[str, object]:
     """What opens instances."""
     return {
-        "name": instances.signal.name,
+        "name": instances.signal.heard,
         "topic": topics_of(instances.signal)[0],
         "mark": instances.mark.name,
         "limit": instances.limit or MOST_IDS,

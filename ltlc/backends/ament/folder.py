@@ -10,11 +10,11 @@ from ltlc.backends.ament.metadata import Metadata, metadata_of
 from ltlc.base.files import refuse_unwritable
 
 MADE = "Made by ltlc"
-"""What the package.xml of a package says that may be written over."""
+"""The package.xml of a package that may be overwritten."""
 
 
 def earlier(folder: Path) -> Metadata:
-    """What a package that stands in `folder` says of itself; if there is none, what one says at first.
+    """The manifest of the package in `folder`; if there is none, that of a new one.
 
     Raises OSError if `folder` cannot be written to, or has something else in it.
     """

@@ -16,7 +16,7 @@ class Metadata:
 
 
 def metadata_of(package_xml: str) -> Metadata:
-    """What somebody has filled in. Raises ValueError if it is not the package.xml of a package."""
+    """What the user has filled in. Raises ValueError if it is not the package.xml of a package."""
     try:
         root = ElementTree.fromstring(package_xml)
     except ElementTree.ParseError as error:

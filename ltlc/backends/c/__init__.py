@@ -72,7 +72,7 @@ class Files:
         return [signal for group in groups for signal in group.readings]
 
     def text_of(self, number: int) -> list[str]:
-        """What the files say of the property with this number: its own code, and that of what it reads."""
+        """What the files have for the property with this number: its own code, and that of what it reads."""
         writer = self.properties[number]
         return [
             *writer.members(),
@@ -230,16 +230,18 @@ class _File:
             "\n".join([*p.schedule, *p.clock_step, *p.step, *p.is_due, *p.hearing()]) for p in self.properties
         ]
         counts = [text for _, text in self.helpers.counts.values()]
-        in_table = [] if self.table is None else self.table.text()
-        code = "\n".join([*counts, *properties, *(line for _, statements in judged for line in statements), *in_table])
+        table = ""
+        if self.table is not None:
+            table = template(__name__, "table.c.jinja").render({**context, **self.table.source()})
+        code = "\n".join([*counts, *properties, *(line for _, statements in judged for line in statements), table])
         functions = texts(code, self.helpers.arrays, self.prefix)
         about = comment(f"The monitors that {self.stem}.h declares; see there.")
         return template(__name__, "source.c.jinja").render(
             {
                 **context,
-                **({} if self.table is None else self.table.source()),
                 "about": about,
                 "properties": properties,
+                "table_text": table,
             },
             math=uses_math("\n".join([*functions, code])),
             functions=functions,

@@ -8,11 +8,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from ltlc.backends.c.instances import OpenTable
+from ltlc.backends.c.code import lines
+from ltlc.backends.c.instances import OpenTable, compared
 from ltlc.backends.c.monitors import PropertyWriter
 from ltlc.backends.c.types import type_name
 from ltlc.backends.spelling import NotInTargetError
-from ltlc.backends.trees import Text
+from ltlc.backends.statements import Do, conjunction, disjunction
+from ltlc.backends.trees import INDENT, Text
 from ltlc.compiler import Compiled
 from ltlc.program.as_new import states_as_new
 from ltlc.program.lowering import read
@@ -30,7 +32,7 @@ ids ids_advance ids_init ids_next_deadline ids_share ids_step ids_verdict left_o
 
 @dataclass(frozen=True)
 class Table:
-    """The table of at most `limit` ids of type `key`, each with the monitors of the property called `name`.
+    """The table of at most `limit` ids of type `key`, each with the monitors of one property.
 
     A slice in one of the states `as_new` is dropped. Samples have messages of a slice where one of `own` holds, and of
     all slices where one of `shared` does.
@@ -41,7 +43,7 @@ class Table:
     as_new: tuple[int, ...]
     own: Sequence[Text]
     shared: Sequence[Text]
-    name: str
+    writer: PropertyWriter
 
     stem = "ids"
     """What the names of its functions begin with, after the prefix."""
@@ -53,6 +55,11 @@ class Table:
         """How many there are: half of them are free, so that a search ends."""
         return 2 * self.limit
 
+    @property
+    def is_shared(self) -> bool:
+        """Whether something may come that all ids get."""
+        return bool(self.shared)
+
     def text(self) -> list[str]:
         """All that is particular of it, in C."""
         flags = (code.text for code in (*self.own, *self.shared))
@@ -61,7 +68,20 @@ class Table:
     def source(self) -> dict[str, object]:
         """What its functions are made of."""
         own, shared = ("".join(f"{code.text} || " for code in of) for of in (self.own, self.shared))
-        return {"name": self.name, "own": own, "foreign": shared}
+        return {
+            "name": self.writer.name,
+            "own": own,
+            "foreign": shared,
+            "as_new": self._as_new() if self.as_new else [],
+        }
+
+    def _as_new(self) -> list[str]:
+        """Whether the next message does what a first one does: nothing is owed, no clock runs."""
+        member, constant = f"monitors->{self.writer.name}", self.writer.helpers.prefix.upper()
+        parts = [compared(f"{member}.verdict", "==", f"{constant}_PRESUMABLY_SATISFIED")]
+        parts += [compared(f"{member}.due", "==", f"{constant}_NEVER")] if self.writer.clock_step else []
+        parts.append(disjunction([compared(f"{member}.state", "==", str(state)) for state in self.as_new]))
+        return lines([Do("return ", conjunction(parts))], INDENT)
 
 
 def names_taken(compiled: Sequence[Compiled]) -> Sequence[str]:
@@ -95,7 +115,7 @@ def _of_ids(one: PropertyWriter, slicing: Slicing) -> Table:
         tuple(sorted(states_as_new(one.machine, one.specification, slicing))),
         samples.news(slicing.topics),
         samples.news(shared_topics(one.compiled, slicing)),
-        one.name,
+        one,
     )
 
 
@@ -118,7 +138,7 @@ def require_a_table(compiled: Sequence[Compiled], specification: Specification) 
         if slicing.limit > MOST:
             raise NotInTargetError(f"`limit {slicing.limit}`, more than {MOST} {what}")
         if len(compiled) > 1:
-            raise NotInTargetError(f"{form} beside other properties: in C it needs a file of its own")
+            raise NotInTargetError(f"{form} beside other properties: it needs a file of its own")
         if specification.rate is not None or specification.timeout is not None:
             raise NotInTargetError(f"{form} with `_rate_` or `_timeout_`")
         if isinstance(slicing, Slicing):

@@ -30,6 +30,8 @@ class OpenTable:
     """What the names of its functions begin with, after the prefix."""
     names = _NAMES.split()
     """What is declared for it, after the prefix."""
+    is_shared = True
+    """Whether something may come that all get."""
 
     @property
     def limit(self) -> int:
@@ -59,8 +61,8 @@ class OpenTable:
 
     def _alike(self) -> list[str]:
         """Whether two have the same clocks, as few have, and the same state and values at openings."""
-        found = [_compared(f"one->{due}", "==", f"other->{due}") for due in self.writer.dues]
-        found.append(_compared("one->state", "==", "other->state"))
+        found = [compared(f"one->{due}", "==", f"other->{due}") for due in self.writer.dues]
+        found.append(compared("one->state", "==", "other->state"))
         for named in self._openings:
             one, other = f"one->{named.text}", f"other->{named.text}"
             if named.type.scalar is Scalar.TEXT and not named.type.is_array:
@@ -70,7 +72,7 @@ class OpenTable:
         return lines([Do("return ", conjunction(found))], INDENT)
 
     def _kept(self) -> Iterator[str]:
-        """What tells instances apart, as it was before something came."""
+        """What distinguishes instances, as it was before something came."""
         yield from (f"int64_t old_{due} = own->{due}" for due in self.writer.dues)
         yield f"{self.writer.state_type} old_state = own->state"
         for named in self._openings:
@@ -80,8 +82,8 @@ class OpenTable:
     def _changed(self) -> list[str]:
         """Whether any of that has changed; a string is the same where it stands in the same place."""
         found: list[Code] = [Text("has_changed")]
-        found += [_compared(f"old_{due}", "!=", f"own->{due}") for due in self.writer.dues]
-        found.append(_compared("old_state", "!=", "own->state"))
+        found += [compared(f"old_{due}", "!=", f"own->{due}") for due in self.writer.dues]
+        found.append(compared("old_state", "!=", "own->state"))
         for named in self._openings:
             found += _parts(named, f"old_{named.text}", "!=", f"own->{named.text}")
         return lines([Do("has_changed = ", disjunction(found))], INDENT * 2)
@@ -94,8 +96,9 @@ class OpenTable:
 def _parts(named: Named, one: str, operator: str, other: str) -> Iterator[Code]:
     """Comparisons of two values; of an array, of where it stands, and its length."""
     for part in (".elements", ".length") if named.type.is_array else ("",):
-        yield _compared(f"{one}{part}", operator, f"{other}{part}")
+        yield compared(f"{one}{part}", operator, f"{other}{part}")
 
 
-def _compared(one: str, operator: str, other: str) -> Code:
+def compared(one: str, operator: str, other: str) -> Code:
+    """Two that are compared."""
     return Chain((Text(one), Text(other)), (operator,))

@@ -238,7 +238,7 @@ class PropertyWriter:
         return [*self._described(), "typedef struct {", *(INDENT + line for line in fields), f"}} {self.type};", ""]
 
     def first_dues(self) -> list[str]:
-        """Statements after which no clock is due, and what is counted is late."""
+        """Statements after which no clock is due, and counts are late."""
         late = {each.clock for each in self.counts}
         never = f"{self.prefix.upper()}_NEVER"
         return [f"{INDENT}monitors->{self.name}.{due} = {'-' * (due in late)}{never};" for due in self.dues]
@@ -256,7 +256,7 @@ class PropertyWriter:
         return list(dict.fromkeys([*given.fresh(self.inputs), *news, *opening]))
 
     def _write_due(self) -> None:
-        """The function that says whether a step is due; without anything to read, none ever is."""
+        """The function for whether a step is due; without anything to read, none ever is."""
         self.is_due: list[str] = []
         triggers = self.triggers()
         if not triggers:
@@ -298,7 +298,7 @@ class PropertyWriter:
         ]
 
     def _schedule(self) -> list[str]:
-        """The function that says when the next clock step is due."""
+        """The function for when the next clock step is due."""
         statements = scheduled(self.machine, self.wording)
         about = comment(f"The next clock step of {self.specification.label} is that of the first clock to be due.")
         return self._function(about, "schedule", ["int64_t time"], lines(statements, INDENT))

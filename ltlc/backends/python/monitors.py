@@ -218,7 +218,7 @@ class _Writer:
         return [*lines, *lines_of(statements, _BODY)]
 
     def _told(self) -> Iterator[Statement]:
-        """What is done with what a program tells, which keeps no history."""
+        """How samples from a program are taken, without history."""
         yield from self._hearing()
         yield from self._stand_ins()
         yield from self._conversions()

@@ -31,7 +31,7 @@ from ltlc.program.as_new import states_as_new
 from ltlc.program.expressions import Apply, reads_of
 from ltlc.program.expressions import Expression as Value
 from ltlc.program.expressions import parts as parts_of
-from ltlc.program.functions import ROWS, Nan
+from ltlc.program.functions import ROWS, Nan, Primitive
 from ltlc.program.lowering import has_sample, lowered, predicate, read
 from ltlc.program.machine import Machine
 from ltlc.runtime import MODULES
@@ -199,7 +199,7 @@ def _instances(plan: _Plan, compiled: Compiled, of: Instances) -> Group:
     _, heard = next(fields(of.signal))
     parts_ = (
         _own_signals(plan, compiled),
-        f"name={literal(of.signal.name)}",
+        f"name={literal(of.signal.heard)}",
         f"topic={literal(heard.topic)}",
         f"mark={literal(of.mark.name)}",
         f"limit={of.limit or plan.most_ids!r}",
@@ -227,9 +227,10 @@ def _key(slicing: Slicing, read: Collection[str], key: Signal, source: Field) ->
 
 def _needed(machine: Machine) -> list[int]:
     """The places among the inputs of arrays without whose measurements an expression has no value."""
-    folds = (fold for guard in machine.guards for fold in parts_of(guard) if isinstance(fold, Apply))
-    needed = {each for fold in folds if ROWS[fold.primitive].nan is Nan.SKIPS for each in parts_of(fold)}
-    return [place for place, wanted in enumerate(machine.inputs) if wanted in needed]
+    applied = (part for guard in machine.guards for part in parts_of(guard) if isinstance(part, Apply))
+    folds = (a for a in applied if ROWS[a.primitive].nan is Nan.SKIPS or a.primitive is Primitive.NEAREST)
+    needed = {each for fold in folds for each in parts_of(fold)}
+    return [place for place, wanted in enumerate(machine.inputs) if wanted in needed and wanted.type.is_array]
 
 
 def _excused(compiled: Compiled) -> Iterator[Group]:

@@ -1,4 +1,4 @@
-"""What the runtime explains violations by: the conditions of a property, and what there is to say of each."""
+"""What the runtime explains violations by: the conditions of a property, with their texts."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How emitted Python says what a step does: attributes of `self`."""
+"""How emitted Python states what a step does: attributes of `self`."""
 
 from __future__ import annotations
 

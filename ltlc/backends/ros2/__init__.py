@@ -37,7 +37,7 @@ def emit(compiled: Sequence[Compiled], specification: Specification) -> str:
 
 
 def context(compiled: Sequence[Compiled], specification: Specification, taken: frozenset[str]) -> dict[str, Any]:
-    """What a node says of its properties: their monitors, and what takes messages apart, with no name in `taken`."""
+    """The parts of a node about its properties: monitors, and readers of messages, with no name in `taken`."""
     readers, topics = topics_code(read_topics(compiled), taken)
     return {
         "source": prose(PurePath(specification.source.name).name),

@@ -37,7 +37,7 @@ class Import:
 
 
 FOR_TYPES = Import("typing", "TYPE_CHECKING")
-"""What says that an import is for types only."""
+"""What marks an import as for types only."""
 
 
 @dataclass(frozen=True, slots=True)

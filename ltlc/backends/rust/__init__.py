@@ -11,7 +11,7 @@ from pathlib import PurePath
 
 from ltlc import __version__
 from ltlc.backends import c
-from ltlc.backends.inputs import origin, require_whole_runs
+from ltlc.backends.inputs import origin
 from ltlc.backends.names import class_name
 from ltlc.backends.rust.code import comment
 from ltlc.backends.rust.functions import FUNCTIONS, ONLY_IN_C, texts
@@ -49,7 +49,7 @@ MISSING = frozenset(
 
 @dataclass(frozen=True, slots=True)
 class File:
-    """The text of a file, and the files of C that it says the same as."""
+    """The text of a file, and the files of C that it is equivalent to."""
 
     text: str
     c: c.Files
@@ -64,9 +64,6 @@ def emit(compiled: Sequence[Compiled], specification: Specification) -> str:
 
 def in_c(compiled: Sequence[Compiled], specification: Specification) -> c.Files:
     """The files of C from which Rust is printed. Raises NotInTargetError."""
-    require_whole_runs(compiled)
-    if specification.rate is not None:
-        raise NotInTargetError("ticks of `_rate_`")
     for primitive in (p.primitive for each in compiled for whole in _calculated(each) for p in _applied(whole)):
         if primitive in MISSING:
             raise NotInTargetError(f"the {primitive.value}, for which `core` has no function")
@@ -87,7 +84,8 @@ def _applied(whole: Expression) -> Iterator[Apply]:
 def file_of(compiled: Sequence[Compiled], specification: Specification) -> File:
     """The file for `compiled`, with the files of C. Raises NotInTargetError."""
     files = in_c(compiled, specification)
-    trees, unique = Trees(files), type_names()
+    trees = Trees(files)
+    unique = type_names(trees.structs.keys() - {p.name for p in files.properties})
     labels = {p.name: unique.unique(class_name(p.specification.label)) for p in files.properties}
     types = Types(trees, labels)
     given = files.samples
@@ -97,27 +95,33 @@ def file_of(compiled: Sequence[Compiled], specification: Specification) -> File:
     printer = Printer(trees, types, fields)
     functions = {name: printer.function(name) for name in _printed(trees)}
     of = {name: trees.owner(name) for name in functions}
+    tabled = [] if files.table is None else files.table.names
     code = "\n".join(line for text in functions.values() for line in text)
     text = template(__name__, "template.rs.jinja").render(
         about=_about(compiled, specification),
         never=NEVER,
         verdicts=[(verdict_name(verdict), meaning) for verdict, meaning in MEANINGS.items()],
-        properties=[(prose(p.specification.label), labels[p.name], spelled(p.name)) for p in files.properties],
+        properties=[
+            (prose(p.specification.label), labels[p.name], spelled(p.name), p.signals.name) for p in files.properties
+        ],
         samples=list(_samples(files, types, fields)),
         functions=[*texts(code), *("\n".join(functions[name]) + "\n" for name in functions if of[name] is None)],
         structs=[
             {
                 "name": types.struct(name),
                 "lifetime": types.lifetime(name),
-                "about": _described(name, files),
+                "about": _described(name, trees),
                 "members": [(spelled(m.name), types.text(m), types.first(m)) for m in struct.decls],
+                "is_public": name == "monitors" or name in tabled,
+                "are_read": name in tabled,
+                "begun": printer.beginning(name),
                 "methods": [functions[each] for each in functions if of[each] == name],
             }
             for name, struct in trees.structs.items()
             if name != "samples"
         ],
         lifetime=types.lifetime("samples"),
-        begun=printer.beginning(),
+        sizes=trees.sizes,
         called=[trees.short(name) for name in functions],
     )
     return File(text, files, fields, types.borrows("samples"))
@@ -125,18 +129,16 @@ def file_of(compiled: Sequence[Compiled], specification: Specification) -> File:
 
 def _printed(trees: Trees) -> Iterator[str]:
     """The functions that are printed: not those that Rust has of its own, nor what is written by itself."""
-    apart = {"init", *(f"{what}_of" for what in ("verdict", "steps", "invalid", "since"))}
+    apart = {"init", *(f"{what}_of" for what in ("verdict", "steps", "invalid", "since", "left_out"))}
+    apart |= set() if trees.files.table is None else {f"{trees.files.table.stem}_init"}
     apart |= FUNCTIONS.keys() | ONLY_IN_C
     return (name for name in trees.functions if trees.short(name) not in apart)
 
 
-def _described(name: str, files: c.Files) -> list[str]:
-    of = {p.name: f"Line {p.specification.line}: {p.specification.text}" for p in files.properties}
-    of |= {
-        "signals": "What is kept of samples, and which messages are news.",
-        "monitors": "The monitors of all properties.",
-    }
-    return comment("///", of[name])
+def _described(name: str, trees: Trees) -> list[str]:
+    of = {p.name: [f"Line {p.specification.line}: {p.specification.text}"] for p in trees.files.properties}
+    of["monitors"] = ["The monitors of all properties."]
+    return comment("///", *(of.get(name) or trees.about_struct(name)))
 
 
 def _samples(files: c.Files, types: Types, fields: dict[str, str]) -> Iterator[str]:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from pycparser import c_ast
 from pycparser.c_ast import Decl, FuncDef, Node
@@ -25,7 +25,8 @@ from ltlc.semantics.verdicts import Verdict
 _LINES = Braces("", " {", "// {}").lines
 _OPERATORS = {"&&": "and", "||": "or"}
 _CONSTANTS = {"true": "true", "false": "false", "INFINITY": "f64::INFINITY", "NAN": "f64::NAN"}
-_CONSTANTS |= {"INT64_MAX": "i64::MAX", "INT64_MIN": "i64::MIN", "INT32_MIN": "i32::MIN"}
+_CONSTANTS |= {"INT64_MAX": "i64::MAX", "INT64_MIN": "i64::MIN", "INT32_MIN": "i32::MIN", "UINT32_MAX": "u32::MAX"}
+_CONSTANTS["NULL"] = "None"
 _BORROWED = {"occurred": ("&mut ", "&mut "), "recent": ("&",)}
 """What stands before the first arguments of functions that are given members."""
 
@@ -51,40 +52,51 @@ class Printer:
         return [
             *(comment("///", *described, indent=indent) if described else []),
             *self._head(node, name, owner, indent),
-            *_Body(self, self.trees.owner(name)).lines(node),
+            *_Body(self, owner, name in self.trees.optional).lines(node),
             f"{indent}}}",
         ]
 
-    def beginning(self) -> list[str]:
-        """What makes monitors ready, all of which is 0 before."""
-        _, *items = self.trees.functions[f"{self.trees.files.prefix}_init"].body.block_items
-        return _Body(self, None, {"monitors": "monitors"}).statements(items, INDENT * 2)
+    def beginning(self, struct: str) -> list[str] | None:
+        """What makes a struct ready, all of which is 0 before, if something does; it is called `new`."""
+        name = f"{self.trees.files.prefix}_{'' if struct == 'monitors' else f'{struct}_'}init"
+        if name not in self.trees.functions:
+            return None
+        function = self.trees.functions[name]
+        _, *items = function.body.block_items
+        given = function.decl.type.args.params[0].name
+        return _Body(self, None, places={given: "new"}).statements(items, INDENT * 2)
 
     def _head(self, node: FuncDef, name: str, owner: str | None, indent: str) -> list[str]:
         first, *rest = node.decl.type.args.params
         of = "" if "static" in node.decl.storage else "pub "
         given = rest if owner else [first, *rest]
         kept = {*_kept(node)} if owner and self.types.borrows(owner) else set[str]()
-        pieces = [f"{spelled(each.name)}: {self._parameter(each, kept)}" for each in given]
+        pieces = [f"{spelled(each.name)}: {self._parameter(name, each, kept)}" for each in given]
         if owner:
             pieces.insert(0, "&self" if "const" in first.type.type.quals else "&mut self")
         pieces = [f"{piece}," for piece in pieces[:-1]] + pieces[-1:]
         result = node.decl.type.type
-        returned = "" if result.type.names == ["void"] else f" -> {self.types.text(result)}"
+        returned = f" -> {self._returned(result)}" if self._returned(result) else ""
         return filled(f"{indent}{of}fn {self.called(name)}(", pieces, f"){returned} {{", indent + INDENT * 2)
 
-    def _parameter(self, given: Decl, kept: set[str]) -> str:
+    def _returned(self, result: Node) -> str:
+        """The type of what a function returns; where that may be NULL, it is an option."""
+        if isinstance(result, c_ast.PtrDecl):
+            return f"Option<{self.types.text(result)}>"
+        return "" if result.type.names == ["void"] else self.types.text(result)
+
+    def _parameter(self, function: str, given: Decl, kept: set[str]) -> str:
         """Its type; what is kept of what lies elsewhere has to live as long."""
         if given.name == "samples":
-            return f"&Samples{self.types.lifetime('samples')}"
+            samples = f"&Samples{self.types.lifetime('samples')}"
+            return f"Option<{samples}>" if function in self.trees.optional else samples
         return self.types.text(given, "'a " if given.name in kept else "")
 
     def called(self, name: str) -> str:
-        """What a function is called in Rust: one of a property without the name of that."""
-        if "static" not in self.trees.functions[name].decl.storage:
-            return self.trees.short(name)
+        """What a function is called in Rust: one of a property or a table without the name of that."""
         owner = self.trees.owner(name)
-        return name.removeprefix(f"{owner}_") if owner not in (None, "monitors") else name
+        called = name if "static" in self.trees.functions[name].decl.storage else self.trees.short(name)
+        return called if owner == "monitors" else called.removeprefix(f"{owner}_")
 
 
 def _kept(node: Node) -> Iterator[str]:
@@ -110,10 +122,14 @@ def _bare(value: Node | None) -> Iterator[str]:
 
 @dataclass
 class _Body:
-    """The body of a function of the struct `owner`; `places` are what pointers lead to."""
+    """The body of a function of the struct `owner`, which may be given no samples if that `is_optional`.
+
+    `places` are what pointers lead to.
+    """
 
     printer: Printer
     owner: str | None
+    is_optional: bool = False
     places: dict[str, str] = field(default_factory=dict)
 
     def lines(self, function: FuncDef) -> list[str]:
@@ -160,12 +176,20 @@ class _Body:
             case Decl(name=name, init=value):
                 mutable = "" if "const" in node.quals else "mut "
                 yield Do(f"let {mutable}{spelled(name)} = ", self.value(value))
+            case c_ast.If(cond=c_ast.BinaryOp(op="!=", left=c_ast.ID(name="samples")), iftrue=then, iffalse=otherwise):
+                given = replace(self, is_optional=False)
+                yield If(Text("let Some(samples) = samples"), given._block(then), self._block(otherwise))
             case c_ast.If(cond=cond, iftrue=then, iffalse=otherwise):
                 remark = self.printer.trees.remark(then.coord.line)
                 yield If(self.code(cond), self._block(then), self._block(otherwise), remark)
             case c_ast.Assignment(op="+=", lvalue=c_ast.StructRef(field=c_ast.ID(name="together")) as place):
                 more = Call("wrapping_add", (self.value(node.rvalue),))
                 yield f"{self.place(place)} = {self.place(place)}.{flat(more)}"
+            case c_ast.Assignment(lvalue=c_ast.StructRef(name=c_ast.StructRef(field=c_ast.ID(name="latest"))) as place):
+                if place.field.name in self.printer.trees.files.samples.fields.values():
+                    yield f"{self.place(place)} = {self.place(node.rvalue)}"  # a flag stands for that it comes
+            case c_ast.Assignment(op="*=", lvalue=place, rvalue=value):
+                yield Do(f"{self.place(place)} = ", Call(f"{self.place(place)}.wrapping_mul", (self.value(value),)))
             case c_ast.Assignment(op=operator, lvalue=place, rvalue=value):
                 yield Do(f"{self.place(place)} {operator} ", self.value(value))
             case c_ast.UnaryOp(op="p++", expr=c_ast.ID(name=name)):
@@ -180,6 +204,10 @@ class _Body:
                 pass
             case c_ast.Cast(expr=call):
                 yield Do("", self.code(call))
+            case c_ast.FuncCall(name=c_ast.ID(name=name), args=args) if (
+                name == f"{self.printer.trees.files.prefix}_init"
+            ):
+                yield f"{self.place(args.exprs[0].expr)} = Monitors::new()"
             case c_ast.FuncCall():
                 yield Do("", self.code(node))
             case _:
@@ -192,6 +220,10 @@ class _Body:
                 return self.places.get(name) or spelled(name)
             case c_ast.StructRef(name=c_ast.ID(name="samples"), field=c_ast.ID(name=name)):
                 return f"samples.{self.printer.fields[name]}"
+            case c_ast.UnaryOp(op="*", expr=inner):
+                return self.place(inner)
+            case c_ast.StructRef(name=inner, field=c_ast.ID(name="elements")):
+                return f"{self.place(inner)}.as_ptr()"
             case c_ast.StructRef(name=inner, field=c_ast.ID(name="length")):
                 return f"{self.place(inner)}.len()"
             case c_ast.StructRef(name=inner, field=c_ast.ID(name=name)):
@@ -210,11 +242,15 @@ class _Body:
     def value(self, node: Node) -> Code:
         """An expression that stands alone."""
         match node:
+            case c_ast.TernaryOp(cond=cond, iftrue=then, iffalse=c_ast.ID(name="NULL")):
+                return Text(f"if {flat(self.value(cond))} {{ Some({flat(self.value(then))}) }} else {{ None }}")
             case c_ast.TernaryOp(cond=cond, iftrue=then, iffalse=otherwise):
                 sides = (flat(self.value(side)) for side in (cond, then, otherwise))
                 return Text("if {} {{ {} }} else {{ {} }}".format(*sides))
             case c_ast.Cast(to_type=type_, expr=inner) if not _is_constant(inner):
-                return Text(f"{flat(self.code(inner))} as {self.printer.types.text(type_.type)}")
+                operand = flat(self.code(inner))
+                operand = f"({operand})" if isinstance(inner, c_ast.BinaryOp) else operand
+                return Text(f"{operand} as {self.printer.types.text(type_.type)}")
             case _:
                 return self.code(node)
 
@@ -231,10 +267,12 @@ class _Body:
                 return Text(constant)
             case c_ast.StructRef(name=c_ast.ID(name="samples"), field=c_ast.ID(name=name)):
                 return Text(self.place(node) + self._of_samples(name))
-            case c_ast.ID() | c_ast.StructRef() | c_ast.ArrayRef():
+            case c_ast.ID() | c_ast.StructRef() | c_ast.ArrayRef() | c_ast.UnaryOp(op="*"):
                 return Text(self.place(node))
             case c_ast.UnaryOp(op="!", expr=c_ast.FuncCall(name=c_ast.ID(name="same_text"), args=args)):
                 return Chain(tuple(map(self.code, args.exprs)), ("!=",))
+            case c_ast.UnaryOp(op="&", expr=c_ast.StructRef(field=c_ast.ID(name="latest")) as place):
+                return Text(f"&{{ {self.place(place)} }}")  # a copy, for something else may change
             case c_ast.UnaryOp(op=operator, expr=inner):
                 return Prefix("not " if operator == "!" else operator, self.code(inner))
             case c_ast.Cast(expr=inner) if _is_constant(inner):
@@ -252,9 +290,12 @@ class _Body:
 
     def _constant(self, name: str) -> str | None:
         own = f"{self.printer.trees.files.prefix.upper()}_"
-        if name.startswith(own) and name.removeprefix(own) in Verdict.__members__:
-            return f"Verdict::{verdict_name(Verdict[name.removeprefix(own)])}"
-        return "NEVER" if name == f"{own}NEVER" else _CONSTANTS.get(name)
+        if not name.startswith(own):
+            return _CONSTANTS.get(name)
+        short = name.removeprefix(own)
+        if short in Verdict.__members__:
+            return f"Verdict::{verdict_name(Verdict[short])}"
+        return short if short in ("NEVER", *self.printer.trees.sizes) else None
 
     def _of_samples(self, name: str) -> str:
         """What asks a field of samples whether there is a value, or for that; news is what it is."""
@@ -264,8 +305,8 @@ class _Body:
 
     def _operated(self, operator: str, left: Code, right: Code) -> Code:
         match operator:
-            case "%":
-                return Text(f"{flat(left)} % {flat(right)}")
+            case "%" | ">>":
+                return Text(f"{_operand(left)} {operator} {_operand(right)}")
             case "&&" | "||" | "+" | "-" | "*" | "/":
                 name = _OPERATORS.get(operator, operator)
                 is_same = isinstance(left, Infix) and left.operator == name
@@ -291,7 +332,22 @@ class _Body:
             return Call(name, tuple(Text(f"{b}{flat(g)}") if b else g for b, g in zip(before, given, strict=False)))
         first, *rest = arguments
         of = self.place(first.expr if isinstance(first, c_ast.UnaryOp) else first)
-        return Call(f"{of}.{self.printer.called(name)}", tuple(map(self.value, rest)))
+        given = [self._samples(name) if _is_samples(each) else self.value(each) for each in rest]
+        return Call(f"{of}.{self.printer.called(name)}", tuple(given))
+
+    def _samples(self, called: str) -> Code:
+        """The samples, as what a function is given."""
+        is_wrapped = called in self.printer.trees.optional and not self.is_optional
+        return Text("Some(samples)" if is_wrapped else "samples")
+
+
+def _is_samples(node: Node) -> bool:
+    return isinstance(node, c_ast.ID) and node.name == "samples"
+
+
+def _operand(code: Code) -> str:
+    """What stands beside an operator that binds tightly."""
+    return f"({flat(code)})" if isinstance(code, Infix | Chain) else flat(code)
 
 
 def _is_constant(node: Node) -> bool:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -44,6 +45,12 @@ class Trees:
         return {self.short(name): struct for name, struct in found.items() if not _is_array(struct)}
 
     @cached_property
+    def sizes(self) -> dict[str, str]:
+        """How many of something there are at most, by the names of constants without the prefix."""
+        found = (n.type.type for n in self.nodes if isinstance(n, Typedef) and self.short(n.name) == "size")
+        return {self.constant(each.name): each.value.value for enum in found for each in enum.values.enumerators}
+
+    @cached_property
     def functions(self) -> dict[str, FuncDef]:
         """The functions, by their names."""
         return {node.decl.name: node for node in self.nodes if isinstance(node, FuncDef)}
@@ -56,6 +63,15 @@ class Trees:
         """A name without the prefix that all public ones have."""
         return name.removeprefix(f"{self.files.prefix}_")
 
+    def constant(self, name: str) -> str:
+        """The name of a constant without the prefix."""
+        return name.removeprefix(f"{self.files.prefix.upper()}_")
+
+    @property
+    def optional(self) -> Sequence[str]:
+        """The functions that may be given no samples: where a table gives runs what comes or the time, these two."""
+        return ("take", "go_on") if "take" in self.functions else ()
+
     def owner(self, function: str) -> str | None:
         """The struct that a function is given a pointer to before all else, without the prefix; None if none."""
         match self.functions[function].decl.type.args.params[0] if function in self.functions else None:
@@ -66,7 +82,13 @@ class Trees:
 
     def about(self, function: str) -> list[str]:
         """The paragraphs of the comment above a function, or above where it is declared for others."""
-        node = self._prototypes.get(function) or self.functions[function]
+        return self._above(self._prototypes.get(function) or self.functions[function])
+
+    def about_struct(self, name: str) -> list[str]:
+        """The paragraphs of the comment above a struct."""
+        return self._above(self.structs[name])
+
+    def _above(self, node: Node) -> list[str]:
         end = node.coord.line - 1
         while not self._lines[end - 1]:
             end -= 1
@@ -80,7 +102,9 @@ class Trees:
 
     def _plain(self, line: str) -> str:
         """A comment in which nothing has a prefix."""
-        return line.replace(f"`{self.files.prefix}_", "`").replace(f"{self.files.prefix.upper()}_", "")
+        table = "" if self.files.table is None else f"`{self.files.prefix}_{self.files.table.stem}_"
+        bare = (line.replace(table, "`") if table else line).replace(f"`{self.files.prefix}_", "`")
+        return bare.replace(f"{self.files.prefix.upper()}_", "").replace("NULL", "None")
 
     def remark(self, line: int) -> str:
         """The comment at the end of a line, if there is one."""

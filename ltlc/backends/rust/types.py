@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from pycparser.c_ast import ArrayDecl, Decl, IdentifierType, Node, PtrDecl, TypeDecl
+from pycparser.c_ast import ArrayDecl, Constant, Decl, IdentifierType, Node, PtrDecl, TypeDecl
 
 from ltlc.backends.c.types import type_name
+from ltlc.backends.rust.names import spelled, struct_name
 from ltlc.backends.rust.trees import Trees
 from ltlc.program.types import Scalar, Type
 
@@ -42,7 +43,7 @@ class Types:
 
     def struct(self, name: str) -> str:
         """The name of a struct."""
-        return self._names.get(name) or name[0].upper() + name[1:]
+        return self._names.get(name) or struct_name(name)
 
     def borrows(self, name: str) -> bool:
         """Whether values of a struct have parts that lie elsewhere."""
@@ -72,11 +73,15 @@ class Types:
             case Decl(type=inner) | TypeDecl(type=inner):
                 return self.text(inner, lifetime)
             case ArrayDecl(type=inner, dim=dim):
-                return f"[{self.text(inner, lifetime)}; {dim.value}]"
+                return f"[{self.text(inner, lifetime)}; {self._count(dim)}]"
+            case PtrDecl(type=TypeDecl(type=IdentifierType(names=[name]))) if self._is_struct(name):
+                return f"&{self.text(node.type, lifetime)}"
             case PtrDecl():
                 return scalar_text(Scalar.TEXT, lifetime)
             case IdentifierType(names=[name]):
                 short = self._trees.short(name)
+                if short == "verdict":
+                    return "Verdict"
                 if short in ARRAYS:
                     return type_text(Type(ARRAYS[short], is_array=True), lifetime)
                 if short in self._trees.structs:
@@ -84,6 +89,13 @@ class Types:
                 return "usize" if name == "size_t" else scalar_text(SCALARS[name])
             case _:
                 raise TypeError(node)
+
+    def _is_struct(self, name: str) -> bool:
+        return self._trees.short(name) in self._trees.structs
+
+    def _count(self, dim: Node) -> str:
+        """How many elements an array has."""
+        return dim.value if isinstance(dim, Constant) else f"{self._trees.constant(dim.name)} as usize"
 
     def first(self, node: Node) -> str:
         """The value that C has for 0."""
@@ -93,11 +105,13 @@ class Types:
             case Decl(type=inner) | TypeDecl(type=inner):
                 return self.first(inner)
             case ArrayDecl(type=inner, dim=dim):
-                return f"[{self.first(inner)}; {dim.value}]"
+                return f"[{self.first(inner)}; {self._count(dim)}]"
             case PtrDecl():
                 return '""'
             case IdentifierType(names=[name]):
                 short = self._trees.short(name)
+                if short == "samples":
+                    return self.nothing()
                 if short in self._trees.structs:
                     return f"{self.struct(short)}::NEW"
                 scalar = SCALARS.get(name)
@@ -105,3 +119,10 @@ class Types:
                 return simple.get(scalar, "0")
             case _:
                 raise TypeError(node)
+
+    def nothing(self) -> str:
+        """Samples of which nothing has come."""
+        given = self._trees.files.samples
+        flags = (heard.name for heard in given.heard.values() if heard.has_flag)
+        members = [*(f"{spelled(n)}: None" for n in given.fields.values()), *(f"{spelled(n)}: false" for n in flags)]
+        return f"Samples {{ {', '.join(members)} }}"

@@ -124,6 +124,7 @@ CODES: dict[str, Code] = {
     "LTL524": Code("waits-for-others", "A part of the property waits for a signal that it does not read", NOTE),
     "LTL525": Code("never-forgotten", "Ids or messages may be kept forever, until no others can be accepted", NOTE),
     "LTL526": Code("unreachable-count", "A count cannot be reached within its time", WARNING),
+    "LTL527": Code("presumed-rate", "A rate that holds at first decides the property", WARNING),
     "LTL601": Code("inconsistent", "The properties contradict one another"),
     "LTL602": Code("redundant", "The property follows from others", WARNING),
     "LTL603": Code("equivalent", "The property is equivalent to another one", WARNING),

@@ -18,7 +18,7 @@ from ltlc.frontend.language.signals import from_field
 from ltlc.frontend.language.values import Array, Scalar, Text, Truth, Value
 from ltlc.frontend.syntax import tree as syntax
 from ltlc.semantics import properties
-from ltlc.specification.expressions import Bytes, Current, Each, Expression, Field, New, OfSlice, Signal, ValueType
+from ltlc.specification.expressions import Bytes, Current, Each, Field, New, OfSlice, Signal, ValueType
 from ltlc.specification.specification import (
     Instances,
     PropertySpecification,
@@ -106,7 +106,8 @@ def _arrays_beside(checker: Checker, key: Signal) -> Iterator[Signal]:
     for found in checker.names.declarations.values() if key.type.element is not None and not _is_bytes(key) else ():
         if isinstance(found, Array) and isinstance(found.expression, Current):
             signal = found.expression.signal
-            if _belong_together(key.definition, signal.definition):
+            of, its = key.definition, signal.definition
+            if isinstance(of, Field) and isinstance(its, Field) and of.is_beside(its):
                 yield signal
 
 
@@ -114,15 +115,6 @@ def _is_bytes(key: Signal) -> bool:
     """Whether a key is an array of bytes, an id as a whole."""
     is_array = isinstance(key.definition, Field) and Each() not in key.definition.path
     return is_array and key.type is ValueType.NUMBERS and key.numbers == PRIMITIVES["uint8"]
-
-
-def _belong_together(one: Field | Expression, other: Field | Expression) -> bool:
-    """Whether two arrays are fields of one array of messages, or stand side by side in a message."""
-    if not isinstance(one, Field) or not isinstance(other, Field) or one.topic != other.topic:
-        return False
-    if Each() in one.path or Each() in other.path:
-        return one.list == other.list
-    return one.path[:-1] == other.path[:-1]
 
 
 def _stands_for_one_key(checker: Checker, node: syntax.EachOf, key: Signal) -> bool:
@@ -169,7 +161,7 @@ def speaks_of_its_ids(checker: Checker, node: syntax.EachOf, found: PropertySpec
     if not found.slicing.topics.isdisjoint(topics(found)):
         return True
     named = " and ".join(f"`{topic}`" for topic in sorted(found.slicing.topics))
-    message = f"the property reads nothing from {named}: it is the same for every `{node.variable.text}`"
+    message = f"the property uses neither `{node.variable.text}` nor a value or news from {named}"
     checker.report(
         "LTL113", node.body.span, message, help=f"use `{node.variable.text}` in the property, or omit `each`"
     )

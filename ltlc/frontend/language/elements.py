@@ -179,20 +179,23 @@ def _is_sound(checker: Checker, node: syntax.Quantified, count: Count) -> bool:
 def _belong_together(checker: Checker, node: syntax.Quantified, elements: Sequence[Element]) -> bool:
     """Whether it is known which elements go side by side; else that is reported."""
     fields = {expression_text(read): read for element in elements for read in [next(inputs(element))]}
-    if len(set(map(_list_of, fields.values()))) < 2:
+    first, *others = fields.values()
+    if all(_is_beside(first, other) for other in others):
         return True
     named = " and ".join(f"`{name}`" for name in fields)
-    message = f"{named} are not fields of one array of messages: it is not known which elements belong together"
+    message = f"{named} are not side by side in one message: it is not known which elements belong together"
     apart = ", ".join(f"({name})" for name in fields)
     help = f"compare single values with the elements of one array; or, to combine all elements, write `… over {apart}`"
     checker.report("LTL230", node.condition.span, message, help=help)
     return False
 
 
-def _list_of(array: Input) -> object:
-    """The list that the elements of an array are in."""
-    definition = array.signal.definition
-    return array if isinstance(array, Recent) or not isinstance(definition, Field) else definition.list
+def _is_beside(one: Input, other: Input) -> bool:
+    """Whether the elements of two arrays with the same index belong together."""
+    first, second = one.signal.definition, other.signal.definition
+    if isinstance(one, Recent) or isinstance(other, Recent) or not isinstance(first, Field):
+        return one == other
+    return isinstance(second, Field) and first.is_beside(second)
 
 
 def of_elements(checker: Checker, node: syntax.Comparison, left: Value, right: Value) -> Help:

@@ -29,8 +29,9 @@ from ltlc.specification.specification import fields
 
 _NO_NAMES = {
     "nan": "omit this comparison: a sample that is NaN makes no step, and reports state how many there were",
+    "each": "write `each NAME of KEY: P` for each value of KEY, or `each new SIGNAL: P` from each message on",
 }
-"""Names of other languages for numbers that have none here."""
+"""Words that mean something in other languages, or lack what belongs to them here."""
 
 MOST_OFFERED = 3
 """So many names are offered for an abbreviation at most."""

@@ -34,9 +34,11 @@ ANGLES = {"roll": Function.ROLL, "pitch": Function.PITCH, "yaw": Function.YAW}
 """The parts of an orientation that are numbers."""
 
 
-def signal(name: str, definition: Field | Expression, type_: ValueType = ValueType.NUMBER) -> Expression:
+def signal(
+    name: str, definition: Field | Expression, type_: ValueType = ValueType.NUMBER, whole: str = ""
+) -> Expression:
     """The latest sample of the signal `name`."""
-    return Current(Signal(name, type_, definition))
+    return Current(Signal(name, type_, definition, whole=whole))
 
 
 def from_field(name: str, kind: str, field: Field) -> Value:
@@ -53,10 +55,10 @@ def from_field(name: str, kind: str, field: Field) -> Value:
             assert type_.element is not None
             return Array(signal(name, field, type_), type_.element)
         case "vector":
-            x, y, z = (signal(f"{name}.{axis}", _inside(field, axis)) for axis in "xyz")
+            x, y, z = (signal(f"{name}.{axis}", _inside(field, axis), whole=name) for axis in "xyz")
             return Vector((x, y, z), name)
         case "orientation":
-            x, y, z, w = (signal(f"{name}.{axis}", _inside(field, axis)) for axis in "xyzw")
+            x, y, z, w = (signal(f"{name}.{axis}", _inside(field, axis), whole=name) for axis in "xyzw")
             return orientation(name, (x, y, z, w))
         case _:
             raise ValueError(f"not a kind of value: {kind}")
@@ -135,7 +137,8 @@ def components(thing: Thing, quantity: str) -> tuple[Expression, ...] | None:
     path = SOURCES[thing.message](thing.name).get(quantity)
     if path is not None:
         field = Field(thing.topic, thing.message, path)
-        return tuple(signal(f"{thing.name}.{quantity}.{axis}", _inside(field, axis)) for axis in axes)
+        whole = f"{thing.name}.{quantity}"
+        return tuple(signal(f"{whole}.{axis}", _inside(field, axis), whole=whole) for axis in axes)
     if quantity != "velocity":
         return None
     position = components(thing, "position") or ()

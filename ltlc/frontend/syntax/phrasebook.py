@@ -59,6 +59,9 @@ _IS = r"(?:(?:is|are|be|being|stays?|remains?)\s+)?"
 _PER_SAMPLE = "this is the change from one sample to the next, not per second"
 _FROM_SECOND = "this counts messages, `X` steps of the run"
 _FIFTY = "this is of the last 50 samples, however long they took: windows of time are not averaged"
+_EACH_MESSAGE = "this is judged from each message on; `each NAME of KEY: P` is judged for each value of KEY"
+_ANY = "for at least one element, write `any` in place of `all`"
+_LAST_SECOND = "a rate is the number of messages in a time, here the last second, which must be at least so many"
 _SUBJECT = r"(?P<v>[A-Za-z]\w*(?:\.\w+)*)"
 _COMPARED = r"(?P<c>\s*(?:[<>]=?|[=!]=)\s*[-\w.]+)?"
 _WINDOW = rf"\(\s*{_SUBJECT}\s*\)\s+(?:over|within)\s+{_D}"
@@ -212,6 +215,23 @@ PHRASES: tuple[Phrase, ...] = (
             (rf"{_IS}equal\s+to", "=="),
             (r"equals", "=="),
         )
+    ),
+    # One property for each id or message, of all elements, and rates.
+    Phrase(
+        r"(?:for\s+)?(?:each|every|all)\s+(?P<v>\w+)\s+(?:of|in)\s+(?P<k>\w+)\s*[:,]\s*(?P<x>.+)",
+        "each {v!r} of {k!r}: {x!r}",
+    ),
+    Phrase(r"(?:for\s+)?(?:each|every)\s+new\s+(?P<k>\w+)\s*[:,]\s*(?P<x>.+)", "each new {k!r}: {x!r}"),
+    Phrase(r"(?:for\s+)?(?:each|every)\s+(?P<k>\w+)\s*[:,]\s*(?P<x>.+)", "each new {k!r}: {x!r}", _EACH_MESSAGE),
+    Phrase(
+        r"(?P<x>.*?)(?P<a>\w+)\[\s*[*:]?\s*\](?P<c>\s*(?:[<>]=?|[=!]=)\s*[-\w.]+)(?P<y>.*)",
+        "{x!r}all({a!r}{c!r}){y!r}",
+        _ANY,
+    ),
+    Phrase(
+        rf"(?P<x>.*)\brate\(\s*{_SUBJECT}\s*\)\s*>=?\s*(?P<n>\d+)\s*Hz(?!\s+over\b)(?P<y>.*)",
+        "{x!r}rate({v!r}) >= {n!r} Hz over 1 s{y!r}",
+        _LAST_SECOND,
     ),
     # Intervals.
     Phrase(

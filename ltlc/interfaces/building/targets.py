@@ -159,7 +159,7 @@ class _Rust:
     def refuse(self) -> None:
         refuse_unwritable(self.path)
 
-    def make(self, compiled: Sequence[Compiled], specification: Specification, _: Messages) -> Made:
+    def make(self, compiled: Sequence[Compiled], specification: Specification, messages: Messages) -> Made:
         from ltlc.assurance.c_programs import rust_programs  # takes time, as what reads Rust does
         from ltlc.assurance.reading.rust import written as written_in_rust
         from ltlc.backends import rust
@@ -168,8 +168,9 @@ class _Rust:
             file = rust.file_of(compiled, specification)
         except NotInTargetError:
             raise UnfitError(_unfit("Rust", rust.emit, specification, compiled)) from None
-        read = written_in_rust(file.text, file.c.header, file.c.source, compiled, specification.timeout)
-        return Made(rust_programs(file, compiled, specification), read, lambda: {self.path: file.text})
+        own = (specification.rate, specification.timeout)
+        read = written_in_rust(file.text, file.c.header, file.c.source, compiled, *own)
+        return Made(rust_programs(file, compiled, specification, messages), read, lambda: {self.path: file.text})
 
 
 def _unfit(

@@ -101,7 +101,8 @@ def _written(code: Code, compiled: Sequence[Compiled], specification: Specificat
         case "rust":
             (text,) = code.texts.values()
             files = rust.in_c(compiled, specification)
-            return written_in_rust(text, files.header, files.source, compiled, specification.timeout)
+            own = (specification.rate, specification.timeout)
+            return written_in_rust(text, files.header, files.source, compiled, *own)
         case "c":
             texts = code.texts[f"{code.stem}.h"], code.texts[f"{code.stem}.c"]
             return written_in_c(*texts, compiled, specification.rate, specification.timeout)

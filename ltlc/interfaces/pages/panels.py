@@ -80,8 +80,9 @@ class Panel:
     @property
     def title(self) -> str:
         """The expression as it is written; of an age, the `expression` is the news that it counts from."""
-        written = text(self.expression)
-        return f"age({written.removeprefix('new ')})" if self.kind is Drawing.AGE else written
+        if self.kind is Drawing.AGE and isinstance(self.expression, New):
+            return f"age({self.expression.signal.heard})"
+        return text(self.expression)
 
     @property
     def drawn(self) -> Iterator[Expression]:

@@ -14,7 +14,7 @@ from itertools import chain
 import numpy as np
 
 from ltlc.inputs.recordings.blocks import Block, Places
-from ltlc.monitoring.columns.alone import take_alone
+from ltlc.monitoring.columns.alone import Place, take_alone
 from ltlc.monitoring.columns.elements import Elements, elements
 from ltlc.monitoring.columns.following import follow
 from ltlc.monitoring.columns.ids import Runs
@@ -24,11 +24,12 @@ from ltlc.monitoring.columns.others import Others
 from ltlc.monitoring.columns.prepared import Prepared
 from ltlc.monitoring.columns.series import UnsupportedError
 from ltlc.monitoring.columns.tables import Tables
-from ltlc.monitoring.columns.taken import Part, Taken
+from ltlc.monitoring.columns.taken import Part, Taken, Violated
 from ltlc.monitoring.columns.tracks import Stretch, count_invalid
 from ltlc.runtime.properties import Moment
 from ltlc.runtime.session import Plan
 from ltlc.runtime.slice_ids import Slice
+from ltlc.runtime.slice_keys import Id
 from ltlc.runtime.slice_steps import Slices
 from ltlc.runtime.times import NEVER
 from ltlc.semantics.durations import Nanoseconds
@@ -271,7 +272,7 @@ class BySlices:
     def _conclude(self, taken: Taken) -> None:
         """The verdict of the whole."""
         ids, track = self.slices.ids, self.slices.track
-        for _, _, one, failure in sorted(taken.violated, key=lambda each: each[:2]):
+        for _, _, one, failure in sorted(taken.violated, key=_in_order):
             ids.count(one)
             ids.decide(one, failure)
         if ids.violated:
@@ -325,6 +326,12 @@ class BySlices:
         for number in known.kept().tolist():
             self.slices.keep(known.slice(number))
         self._known = Known(self.slices, self._of, self._tables.machine)
+
+
+def _in_order(violated: Violated) -> tuple[Place, Id]:
+    """By what violations are ordered, as by rows: those of a clock at one time by their ids, of a step by age."""
+    place, begins, one, failure = violated
+    return place, one.id if failure.by_time else begins
 
 
 def _first(messages: Places) -> int | None:

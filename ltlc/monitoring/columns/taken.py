@@ -16,6 +16,9 @@ from ltlc.monitoring.columns.following import Followed
 from ltlc.runtime.properties import Failure
 from ltlc.runtime.slice_ids import Slice
 
+Violated = tuple[Place, int, Slice, Failure]
+"""Where a slice was violated, when it began, and how."""
+
 
 @dataclass(frozen=True)
 class Part:
@@ -51,7 +54,7 @@ class Taken:
     steps: Places = field(default_factory=lambda: np.empty(0, np.int64))
     opened: list[Places] = field(default_factory=list)
     changes: list[tuple[Place, int]] = field(default_factory=list)
-    violated: list[tuple[Place, int, Slice, Failure]] = field(default_factory=list)
+    violated: list[Violated] = field(default_factory=list)
 
     @property
     def is_disturbed(self) -> bool:

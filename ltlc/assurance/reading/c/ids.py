@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from ltlc.assurance.reading.c.members import Given, Struct
+from ltlc.assurance.reading.c.tables import in_all
 from ltlc.program.as_new import states_as_new
 from ltlc.program.types import type_of
 from ltlc.specification.specification import Slicing, topics
@@ -52,20 +53,21 @@ class Table:
 
     def functions(self) -> Iterator[str]:
         """The functions that there have to be."""
-        for text in (*_PLACES, *(_AS_NEW if self.as_new else ()), _settle(self), *_over_all(self), *_calls(self)):
+        own = (*_PLACES, *(_AS_NEW if self.as_new else ()), _settle(self), *_over_all(self), *_calls(self))
+        for text in (*in_all("ids", self.is_timed, bool(self.shared)), *own):
             yield text % self._words()
 
     def _words(self) -> Mapping[str, str]:
         """What stands for the names in the texts."""
         name = f"monitors->{self.struct.name}"
-        running = f" || {name}.due != {self.prefix.upper()}_NEVER" if self.is_timed else ""
+        is_still = f" && {name}.due == {self.prefix.upper()}_NEVER" if self.is_timed else ""
         return {
             "p": self.prefix,
             "P": self.prefix.upper(),
             "key": self.key,
             "name": self.struct.name,
-            "running": running,
-            "states": " ".join(f"case {state}:" for state in self.as_new),
+            "is_still": is_still,
+            "states": " || ".join(f"{name}.state == {state}" for state in self.as_new),
             "foreign": "".join(f"{flag} || " for flag in self.shared),
             "own": "".join(f"{flag} || " for flag in self.given.news(list(self.slicing.topics))),
         }
@@ -73,26 +75,25 @@ class Table:
 
 _PLACES = (
     """static uint32_t place_of(%(key)s id) {
-        uint64_t mixed = (uint64_t)id; mixed ^= mixed >> 32; mixed *= UINT64_C(0x9E3779B97F4A7C15);
+        uint64_t mixed = (uint64_t)id; mixed ^= mixed >> 32; mixed *= UINT64_C(0x9e3779b97f4a7c15);
         return (uint32_t)(mixed >> 32) %% %(P)s_PLACES; }""",
-    """static uint32_t find(const %(p)s_ids *ids, %(key)s id) {
+    """static uint32_t find(const %(p)s_ids *all, %(key)s id) {
         uint32_t place = place_of(id);
-        while (ids->slices[place].is_taken && ids->slices[place].id != id) { place = (place + 1u) %% %(P)s_PLACES; }
+        while (all->slices[place].is_taken && all->slices[place].id != id) { place = (place + 1u) %% %(P)s_PLACES; }
         return place; }""",
 )
 """An id stands where it is looked for, or behind it with no free place between."""
 
 _AS_NEW = (
     """static bool is_as_new(const %(p)s_monitors *monitors) {
-        if (monitors->%(name)s.verdict != %(P)s_PRESUMABLY_SATISFIED%(running)s) { return false; }
-        switch (monitors->%(name)s.state) { %(states)s return true; default: return false; } }""",
-    """static void release(%(p)s_ids *ids, uint32_t place) {
-        uint32_t next = (place + 1u) %% %(P)s_PLACES;
-        ids->count--; ids->slices[place].is_taken = false;
-        while (ids->slices[next].is_taken) {
-            const uint32_t home = place_of(ids->slices[next].id);
-            if (place <= next ? (home <= place || home > next) : (home <= place && home > next)) {
-                ids->slices[place] = ids->slices[next]; ids->slices[next].is_taken = false; place = next; }
+        return monitors->%(name)s.verdict == %(P)s_PRESUMABLY_SATISFIED%(is_still)s && (%(states)s); }""",
+    """static void release(%(p)s_ids *all, uint32_t place) {
+        uint32_t hole = place; uint32_t next = (place + 1u) %% %(P)s_PLACES;
+        all->count -= 1u; all->slices[hole].is_taken = false;
+        while (all->slices[next].is_taken) {
+            const uint32_t home = place_of(all->slices[next].id);
+            const bool moves = hole <= next ? (home <= hole || home > next) : (home <= hole && home > next);
+            if (moves) { all->slices[hole] = all->slices[next]; all->slices[next].is_taken = false; hole = next; }
             next = (next + 1u) %% %(P)s_PLACES; } }""",
 )
 """A slice that is as new is dropped, and those behind it still stand so."""
@@ -100,11 +101,11 @@ _AS_NEW = (
 
 def _settle(table: Table) -> str:
     """What is done after a slice may have changed."""
-    dropped = "if (is_as_new(monitors)) { release(ids, place); return true; }" if table.as_new else ""
-    due = "const int64_t due = %(p)s_next_deadline(monitors); if (due < ids->due) { ids->due = due; }"
-    return f"""static bool settle(%(p)s_ids *ids, uint32_t place) {{
-        const %(p)s_monitors *const monitors = &ids->slices[place].monitors;
-        ids->has_started = ids->has_started || monitors->%(name)s.verdict != %(P)s_NOT_STARTED;
+    dropped = "if (is_as_new(monitors)) { release(all, place); return true; }" if table.as_new else ""
+    due = "all->due = sooner(all->due, %(p)s_next_deadline(monitors));"
+    return f"""static bool settle(%(p)s_ids *all, uint32_t place) {{
+        const %(p)s_monitors *const monitors = &all->slices[place].monitors;
+        all->has_started = all->has_started || monitors->%(name)s.verdict != %(P)s_NOT_STARTED;
         {dropped} {due if table.is_timed else ""} return false; }}"""
 
 
@@ -114,50 +115,45 @@ def _over_all(table: Table) -> Iterator[str]:
         return
     step = "(void)%(p)s_step(&slice->monitors, time, samples);"
     advance = "(void)%(p)s_advance(&slice->monitors, time);"
-    given = f"if (samples != NULL) {{ {step} }} else {{ {advance} }}" if table.is_timed else step
+    given = "take(&slice->monitors, time, samples);" if table.is_timed else step
     samples = ", const %(p)s_samples *samples" if table.shared else ""
-    yield f"""static void go_on(%(p)s_ids *ids, int64_t time{samples}) {{
-        uint32_t place = 0; {"ids->due = %(P)s_NEVER;" if table.is_timed else ""}
+    yield f"""static void go_on(%(p)s_ids *all, int64_t time{samples}) {{
+        uint32_t place = 0; {"all->due = %(P)s_NEVER;" if table.is_timed else ""}
         while (place < %(P)s_PLACES) {{
-            %(p)s_slice *const slice = &ids->slices[place];
+            %(p)s_slice *const slice = &all->slices[place];
             if (slice->is_taken) {{ {given if table.shared else advance} }}
-            if (!slice->is_taken || !settle(ids, place)) {{ place++; }} }} }}"""
+            if (!slice->is_taken || !settle(all, place)) {{ place++; }} }} }}"""
 
 
 def _calls(table: Table) -> Iterator[str]:
     """What the header declares."""
-    unborn = "%(p)s_init(&ids->unborn);" if table.shared else ""
-    never = "ids->due = %(P)s_NEVER;" if table.is_timed else ""
-    yield f"""void %(p)s_ids_init(%(p)s_ids *ids) {{
-        *ids = (%(p)s_ids){{0}}; ids->time = INT64_MIN; {never} {unborn} }}"""
-    due = f"if (time >= ids->due) {{ go_on(ids, time{', NULL' if table.shared else ''}); }}" if table.is_timed else ""
-    yield f"""bool %(p)s_ids_advance(%(p)s_ids *ids, int64_t time) {{
-        if (time <= -%(P)s_NEVER || time >= %(P)s_NEVER || time < ids->time) {{ return false; }}
-        ids->time = time; {due} return true; }}"""
-    born = "slice->monitors = ids->unborn;" if table.shared else "%(p)s_init(&slice->monitors);"
-    yield f"""bool %(p)s_ids_step(%(p)s_ids *ids, int64_t time, %(key)s id, const %(p)s_samples *samples) {{
-        if (%(foreign)s!%(p)s_ids_advance(ids, time)) {{ return false; }}
-        const uint32_t place = find(ids, id);
-        %(p)s_slice *const slice = &ids->slices[place];
+    unborn = "%(p)s_init(&all->unborn);" if table.shared else ""
+    never = "all->due = %(P)s_NEVER;" if table.is_timed else ""
+    yield f"""void %(p)s_ids_init(%(p)s_ids *all) {{
+        *all = (%(p)s_ids){{0}}; all->time = INT64_MIN; {never} {unborn} }}"""
+    born = "slice->monitors = all->unborn;" if table.shared else "%(p)s_init(&slice->monitors);"
+    yield f"""bool %(p)s_ids_step(%(p)s_ids *all, int64_t time, %(key)s id, const %(p)s_samples *samples) {{
+        if (%(foreign)s!%(p)s_ids_advance(all, time)) {{ return false; }}
+        const uint32_t place = find(all, id);
+        %(p)s_slice *const slice = &all->slices[place];
         if (!slice->is_taken) {{
-            if (ids->count == %(P)s_LIMIT) {{ ids->left_out += ids->left_out < UINT32_MAX ? 1u : 0u; return false; }}
-            ids->count++; slice->id = id; slice->is_taken = true; slice->lacks_beginning = ids->left_out > 0u; {born} }}
-        (void)%(p)s_step(&slice->monitors, time, samples); (void)settle(ids, place); return true; }}"""
+            if (all->count == %(P)s_LIMIT) {{ all->left_out = counted(all->left_out, 1u); return false; }}
+            all->count++; slice->id = id; slice->is_taken = true; slice->lacks_beginning = all->left_out > 0u; {born} }}
+        (void)%(p)s_step(&slice->monitors, time, samples); (void)settle(all, place); return true; }}"""
     if table.shared:
-        yield """bool %(p)s_ids_share(%(p)s_ids *ids, int64_t time, const %(p)s_samples *samples) {
-            if (%(own)s!%(p)s_ids_advance(ids, time)) { return false; }
-            (void)%(p)s_step(&ids->unborn, time, samples); go_on(ids, time, samples); return true; }"""
-    if table.is_timed:
-        yield "int64_t %(p)s_ids_next_deadline(const %(p)s_ids *ids) { return ids->due; }"
-    yield """%(p)s_verdict %(p)s_ids_verdict(const %(p)s_ids *ids) {
+        yield """bool %(p)s_ids_share(%(p)s_ids *all, int64_t time, const %(p)s_samples *samples) {
+            if (%(own)s!%(p)s_ids_advance(all, time)) { return false; }
+            (void)%(p)s_step(&all->unborn, time, samples); go_on(all, time, samples); return true; }"""
+    yield """%(p)s_verdict %(p)s_ids_verdict(const %(p)s_ids *all) {
         bool is_owed = false;
         for (uint32_t place = 0; place < %(P)s_PLACES; place++) {
-            const %(p)s_slice *const slice = &ids->slices[place];
+            const %(p)s_slice *const slice = &all->slices[place];
             if (slice->is_taken && slice->monitors.%(name)s.verdict == %(P)s_VIOLATED) { return %(P)s_VIOLATED; }
             is_owed = is_owed
                 || (slice->is_taken && slice->monitors.%(name)s.verdict == %(P)s_PRESUMABLY_VIOLATED); }
         if (is_owed) { return %(P)s_PRESUMABLY_VIOLATED; }
-        return ids->has_started ? %(P)s_PRESUMABLY_SATISFIED : %(P)s_NOT_STARTED; }"""
-    yield """const %(p)s_slice *%(p)s_slice_of(const %(p)s_ids *ids, %(key)s id) {
-        const %(p)s_slice *const slice = &ids->slices[find(ids, id)]; return slice->is_taken ? slice : NULL; }"""
-    yield "uint32_t %(p)s_left_out_of(const %(p)s_ids *ids) { return ids->left_out; }"
+        return all->has_started ? %(P)s_PRESUMABLY_SATISFIED : %(P)s_NOT_STARTED; }"""
+    yield """const %(p)s_slice *%(p)s_slice_of(const %(p)s_ids *all, %(key)s id) {
+        const uint32_t place = find(all, id);
+        return all->slices[place].is_taken ? &all->slices[place] : NULL; }"""
+    yield "uint32_t %(p)s_left_out_of(const %(p)s_ids *all) { return all->left_out; }"

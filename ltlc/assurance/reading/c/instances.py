@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from ltlc.assurance.reading.c.members import Given, Struct, declared
+from ltlc.assurance.reading.c.tables import in_all
 from ltlc.program.types import TEXT
 from ltlc.specification.specification import Instances, topics_of
 
@@ -47,7 +48,8 @@ class OpenTable:
             "mark": f"one->monitors.signals.{self.mark}",
             "opens": " || ".join(self.given.news(topics_of(self.instances.signal))),
         }
-        for text in (_COUNTED, self._alike(), _DECIDED, _MERGED, self._take(), self._go_on(), *self._calls()):
+        own = (self._alike(), _DECIDED, _MERGED, self._go_on(), *self._calls())
+        for text in (*in_all("instances", self.is_timed, is_shared=True), *own):
             yield text % words
 
     def _apart(self) -> Iterator[tuple[str, str, list[str]]]:
@@ -71,12 +73,11 @@ class OpenTable:
         return f"""static bool is_alike(const %(p)s_%(name)s *one, const %(p)s_%(name)s *other) {{
             return {" && ".join(same)}; }}"""
 
-    def _take(self) -> str:
-        step = "(void)%(p)s_step(monitors, time, samples);"
-        timed = f"""if (samples != NULL) {{ {step} }} else {{ (void)%(p)s_advance(monitors, time); }}
-            const int64_t due = %(p)s_next_deadline(monitors); if (due < all->due) {{ all->due = due; }}"""
-        return f"""static void take(%(p)s_instances *all, %(p)s_monitors *monitors, int64_t time,
-            const %(p)s_samples *samples) {{ {timed if self.is_timed else step} }}"""
+    def _given(self, run: str) -> str:
+        """One of the runs gets what comes, or the time."""
+        if not self.is_timed:
+            return f"(void)%(p)s_step(&{run}, time, samples);"
+        return f"take(&{run}, time, samples); all->due = sooner(all->due, %(p)s_next_deadline(&{run}));"
 
     def _go_on(self) -> str:
         """All go on as far as they are open and unlike others; one that has just opened has taken its step."""
@@ -92,24 +93,20 @@ class OpenTable:
                 const %(p)s_%(name)s *const own = &one->monitors.%(name)s;
                 const uint32_t invalid = own->invalid; const bool opens = %(mark)s;
                 {old}
-                take(all, &one->monitors, time, samples); %(mark)s = false;
+                {self._given("one->monitors")} %(mark)s = false;
                 has_changed = has_changed || {changed};
                 if (opens && (own->verdict == %(P)s_NOT_STARTED || own->invalid != invalid)) {{
                     all->no_step = counted(all->no_step, 1u);
-                }} else if (!is_decided(all, one) && !(has_changed && is_merged(all, one))) {{
+                }} else if (!is_decided(all, place) && !(has_changed && is_merged(all, place))) {{
                     if (all->count != place) {{ all->open[all->count] = *one; }}
                     all->count++; }} }}
-            take(all, &all->before, time, samples); }}"""
+            {self._given("all->before")} }}"""
 
     def _calls(self) -> Iterator[str]:
         """What the header declares."""
         never = "all->due = %(P)s_NEVER;" if self.is_timed else ""
         yield f"""void %(p)s_instances_init(%(p)s_instances *all) {{
             *all = (%(p)s_instances){{0}}; all->time = INT64_MIN; {never} %(p)s_init(&all->before); }}"""
-        due = "if (time >= all->due) { go_on(all, time, NULL); }" if self.is_timed else ""
-        yield f"""bool %(p)s_instances_advance(%(p)s_instances *all, int64_t time) {{
-            if (time <= -%(P)s_NEVER || time >= %(P)s_NEVER || time < all->time) {{ return false; }}
-            all->time = time; {due} return true; }}"""
         if self.has_session:
             due = "all->due = %(p)s_next_deadline(&all->before);" if self.is_timed else ""
             yield f"""bool %(p)s_instances_begin(%(p)s_instances *all, int64_t time) {{
@@ -123,8 +120,6 @@ class OpenTable:
                 one->opened_at = time; one->monitors = all->before; %(mark)s = true; one->more = 0; all->count++;
             } else if (opens) { all->left_out = counted(all->left_out, 1u); }
             go_on(all, time, samples); return has_place || !opens; }"""
-        if self.is_timed:
-            yield "int64_t %(p)s_instances_next_deadline(const %(p)s_instances *all) { return all->due; }"
         yield """%(p)s_verdict %(p)s_instances_verdict(const %(p)s_instances *all) {
             if (all->violated > 0u) { return %(P)s_VIOLATED; }
             for (uint32_t place = 0; place < all->count; place++) {
@@ -134,22 +129,22 @@ class OpenTable:
             return has_started ? %(P)s_PRESUMABLY_SATISFIED : %(P)s_NOT_STARTED; }"""
 
 
-_COUNTED = """static uint32_t counted(uint32_t count, uint32_t more) {
-    return more > UINT32_MAX - count ? UINT32_MAX : count + more; }"""
-
-_DECIDED = """static bool is_decided(%(p)s_instances *all, const %(p)s_instance *one) {
+_DECIDED = """static bool is_decided(%(p)s_instances *all, uint32_t place) {
+    const %(p)s_instance *const one = &all->open[place];
     const %(p)s_%(name)s *const own = &one->monitors.%(name)s; const uint32_t many = counted(one->more, 1u);
     if (own->verdict == %(P)s_SATISFIED) { all->satisfied = counted(all->satisfied, many); return true; }
     if (own->verdict != %(P)s_VIOLATED) { return false; }
-    const %(p)s_violation found = {one->opened_at, own->since};
-    if (all->violated == 0u || found.since < all->first.since) { all->first = found; }
-    if (all->violated == 0u || found.since >= all->last.since) { all->last = found; }
+    if (all->violated == 0u || own->since < all->first.since) {
+        all->first.opened_at = one->opened_at; all->first.since = own->since; }
+    if (all->violated == 0u || own->since >= all->last.since) {
+        all->last.opened_at = one->opened_at; all->last.since = own->since; }
     all->violated = counted(all->violated, many); return true; }"""
 """One that is decided is counted, with those that it stands for; of the violated, the first and the last are known."""
 
-_MERGED = """static bool is_merged(%(p)s_instances *all, const %(p)s_instance *one) {
-    for (uint32_t place = 0; place < all->count; place++) {
-        %(p)s_instance *const earlier = &all->open[place];
+_MERGED = """static bool is_merged(%(p)s_instances *all, uint32_t place) {
+    const %(p)s_instance *const one = &all->open[place];
+    for (uint32_t other = 0; other < all->count; other++) {
+        %(p)s_instance *const earlier = &all->open[other];
         if (is_alike(&earlier->monitors.%(name)s, &one->monitors.%(name)s)) {
             earlier->more = counted(earlier->more, counted(one->more, 1u)); return true; } }
     return false; }"""

@@ -17,6 +17,8 @@ class Plain:
     """The structs and functions of a file; a function that is given a pointer to a struct is a method of that."""
 
     def __init__(self, definitions: Definitions) -> None:
+        sizes = definitions.types.get(f"{definitions.prefix}_size")
+        self._sizes = sizes.values.enumerators if sizes else ()
         self.functions, self._prefix = definitions.functions, f"{definitions.prefix}_"
         self.structs = {
             self.short(name): struct
@@ -35,11 +37,18 @@ class Plain:
         return short if short in self.structs else None
 
     def method(self, name: str) -> str:
-        """What a function is called: one of a property without the name of that, a public one without the prefix."""
-        if "static" not in self.functions[name].decl.storage:
-            return self.short(name)
+        """What a function is called: one of a property or a table without the name of that, and without the prefix."""
         owner = self.owner(name)
-        return name.removeprefix(f"{owner}_") if owner not in (None, "monitors") else name
+        called = name if "static" in self.functions[name].decl.storage else self.short(name)
+        return called if owner == "monitors" else called.removeprefix(f"{owner}_")
+
+    def sizes(self) -> dict[str, str]:
+        """How many of something there are at most, by the names of constants."""
+        return {self.constant(each.name): each.value.value for each in self._sizes}
+
+    def begins(self, struct: str) -> FuncDef | None:
+        """The function that makes a struct ready."""
+        return self.functions.get(f"{self._prefix}{'' if struct == 'monitors' else f'{struct}_'}init")
 
     def is_method(self, name: str) -> bool:
         """Whether it is one."""
@@ -54,12 +63,18 @@ class Plain:
             return "unwrap_or_default", name
         return ("is_some", flags[name]) if name in flags else (".", "samples", name)
 
+    def kept_by(self) -> dict[str, str]:
+        """For each property the member of monitors that keeps its samples, as what counts its steps says."""
+        (switch,) = statements(self.functions[f"{self._prefix}steps_of"])
+        *cases, _ = (case.stmts[0].expr for case in switch.stmt.block_items)
+        return {each.right.name.field.name: each.left.left.name.field.name for each in cases}
+
     def body(self, function: FuncDef) -> tuple[Tree, ...]:
-        """What a function does; what makes monitors ready begins with those of which all is 0."""
+        """What a function does; what makes a struct ready begins with one of which all is 0."""
         given, items = parameters(function), statements(function)
-        if function.decl.name == f"{self._prefix}init":
-            new: Tree = ("let", "monitors", "Self::NEW")
-            return new, *_Body(self, {"monitors": "monitors"}).block(items[1:]), ("return", "monitors")
+        if function in map(self.begins, self.structs):
+            new: Tree = ("let", "new", "Self::NEW")
+            return new, *_Body(self, {given[0].name: "new"}).block(items[1:]), ("return", "new")
         return _Body(self, {given[0].name: "self"} if self.is_method(function.decl.name) else {}).block(items)
 
     def constant(self, name: str) -> str:
@@ -90,12 +105,22 @@ class _Body:
             case c_ast.For(init=c_ast.DeclList(decls=[index]), cond=cond, next=next_, stmt=inner):
                 yield from self._statement(index)
                 yield "while", self.tree(cond), (*self._inner(inner), *self._statement(next_))
-            case c_ast.Assignment(op="=" | "+=" as operator, lvalue=place, rvalue=value):
+            case c_ast.Assignment(lvalue=c_ast.StructRef(name=c_ast.StructRef(field=c_ast.ID(name="latest"))) as place):
+                match node.rvalue:
+                    case c_ast.ID(name="true"):
+                        pass  # a value is there that has come
+                    case c_ast.StructRef(name=c_ast.ID(name="samples"), field=field):
+                        yield "=", self.tree(place), (".", "samples", field.name)
+                    case _:
+                        raise not_understood(node)
+            case c_ast.Assignment(op="=" | "+=" | "-=" | "*=" | "^=" as operator, lvalue=place, rvalue=value):
                 yield operator, self.tree(place), self.tree(value)
             case c_ast.UnaryOp(op="p++", expr=place):
                 yield "+=", self.tree(place), "1"
             case c_ast.Return(expr=value):
                 yield "return", "" if value is None else self.tree(value)
+            case c_ast.FuncCall(name=c_ast.ID(name=name), args=args) if self.file.short(name) == "init":
+                yield "=", self.tree(args.exprs[0]), ("call", "Monitors::new")
             case c_ast.FuncCall():
                 yield "do", self.tree(node)
             case c_ast.Cast(expr=c_ast.FuncCall() as call):
@@ -131,7 +156,7 @@ class _Body:
                 return "[]", self.tree(array), self.tree(index)
             case c_ast.UnaryOp(op="!", expr=c_ast.FuncCall(name=c_ast.ID(name="same_text"), args=args)):
                 return joined("!=", *map(self.tree, args.exprs))
-            case c_ast.UnaryOp(op="&", expr=inner):
+            case c_ast.UnaryOp(op="&" | "*", expr=inner):
                 return self.tree(inner)
             case c_ast.UnaryOp(op="!" | "-" as operator, expr=inner):
                 return operator, self.tree(inner)

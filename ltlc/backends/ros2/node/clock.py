@@ -24,7 +24,7 @@ class RosTime:
         self.is_simulated = self._clock.ros_time_is_active
 
     def now(self) -> int:
-        """The time; that of the system is not asked of rclpy, which tells it slowly."""
+        """The time; that of the system is not taken from rclpy, which is slow."""
         if not self.is_simulated:
             return time.time_ns()
         nanoseconds: int = self._clock.now().nanoseconds

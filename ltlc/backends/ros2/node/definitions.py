@@ -62,7 +62,7 @@ def quality_text(publishers: Iterable[Any]) -> str:
 
 
 def one_quality(profile: Any) -> str:
-    """That of one of them; what the network does not tell is as by default."""
+    """That of one of them; what the network does not provide is the default."""
     endless = "\n    sec: 9223372036\n    nsec: 854775807"
     parts = {
         "history": "unknown",

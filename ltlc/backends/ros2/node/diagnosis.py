@@ -109,7 +109,7 @@ def _messages(session: Session, listener: Listener) -> KeyValue:
 
 
 def level(track: Track, remarks: Sequence[str]) -> bytes:
-    """How bad it is: an error if violated, a warning if something is owed or amiss."""
+    """The level: an error if violated, a warning if something is open or amiss."""
     amiss = remarks or track.invalid or track.delays
     amiss = amiss or track.verdict is Verdict.PRESUMABLY_VIOLATED
     levels: dict[Verdict, bytes] = {

@@ -101,7 +101,7 @@ class Extracts:
         self._messages.append(KeptMessage(time, topic, sequence, sent or time, data))
         self._heard[topic] += 1
         self._size += len(data) + self.OVERHEAD
-        # What is told late, or decided by time, may be about a moment before the last.
+        # What is reported late, or decided by time, may be about an earlier moment.
         since = min(
             [time - SECOND - self._cut.before, *(w.since for w in self._windows)]
         )

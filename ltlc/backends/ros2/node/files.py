@@ -9,13 +9,13 @@ from pathlib import Path
 
 
 class UnusableError(Exception):
-    """The node cannot start as it was asked to; the message says why."""
+    """The node cannot start with these options; the message says why."""
 
 
 class Lines:
     """A file that lines are appended to, each whole or, if the disk is full, cut off.
 
-    A pipe is not waited for: neither for somebody to read it, nor for room.
+    Opening a pipe waits neither for a reader nor for room.
     """
 
     FLAGS = os.O_WRONLY | os.O_APPEND | os.O_CREAT | os.O_NONBLOCK | os.O_CLOEXEC

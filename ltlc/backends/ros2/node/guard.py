@@ -58,16 +58,16 @@ class Pulse:
 
     @property
     def code(self) -> int | None:
-        """The exit code, once the node has told its verdicts."""
+        """The exit code, once the node has reported its verdicts."""
         return self._numbers[self.CODE] - 1 if self._numbers[self.CODE] else None
 
     def finish(self, code: int) -> None:
-        """The node has told its verdicts, and ends with this exit code."""
+        """The node has reported its verdicts, and ends with this exit code."""
         self._numbers[self.CODE] = code + 1
 
     @property
     def words(self) -> dict[str, Any]:
-        """What is to be told for the node; empty if it has left nothing."""
+        """What to report for the node; empty if it has left nothing."""
         current = self._numbers[self.CURRENT]
         start = self.HEAD + current * self.PLACE
         length = self._numbers[self.LENGTHS + current]
@@ -75,7 +75,7 @@ class Pulse:
         return found
 
     def leave(self, words: dict[str, Any]) -> None:
-        """Leave what is to be told if nothing more can be; too much is not taken."""
+        """Leave what to report if the node no longer can; too much is not taken."""
         data = json.dumps(words).encode()
         if len(data) > self.PLACE:
             return
@@ -183,7 +183,7 @@ class Guard:
                 return
 
     def _is_free(self) -> bool:
-        """Whether the node works or waits, and nobody has stopped it."""
+        """Whether the node works or waits, and was not stopped."""
         try:
             text = Path(f"/proc/{self._pid}/stat").read_text(encoding="utf-8")
         except OSError:
@@ -209,6 +209,6 @@ class Guard:
 
 
 def say(text: str) -> None:
-    """Tell a person, if there is anything to tell them by."""
+    """Write to stderr, if there is one."""
     with suppress(OSError):
         print(text, file=sys.stderr, flush=True)

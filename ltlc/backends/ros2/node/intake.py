@@ -146,7 +146,7 @@ class Listener:
         self._receive(self._latest, self.topic.name, self._values(message))
 
     def _values(self, message: bytes) -> Sequence[Value] | None:
-        """What a message says; None if it is malformed."""
+        """The contents of a message; None if it is malformed."""
         try:
             return self._read(message)
         except MALFORMED as error:
@@ -159,7 +159,7 @@ class Listener:
             return None
 
     def _unstamped(self) -> int:
-        """The middleware does not say when a message was received; when it is taken."""
+        """When a message is taken: the middleware does not say when it was received."""
         self._node.get_logger().warning(
             "the middleware reports no times of receipt: "
             "messages are judged by the times at which the node reads them",
@@ -269,6 +269,6 @@ class Listener:
         )
 
     def _count_lost(self, event: Any) -> None:
-        """The middleware tells of a loss; numbers, where there are any, tell more."""
+        """The middleware reports a loss; numbers, where there are any, show more."""
         if not self._losses.are_numbered:
             self._lose(self.topic.name, event.total_count_change)

@@ -81,7 +81,7 @@ def parse_arguments(about: str) -> None:
 
 
 def watched(stop: threading.Event, node: Node, watch: Watch) -> int:
-    """Watch until it ends or breaks, and tell the verdicts; the exit code."""
+    """Watch until it ends or breaks, and report the verdicts; the exit code."""
     try:
         watch_until(stop, node, watch)
     except Exception:  # noqa: BLE001

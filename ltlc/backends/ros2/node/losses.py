@@ -8,9 +8,9 @@ from collections.abc import Callable, Sequence
 class Losses:
     """What is missing on one topic, seen from what came in on it.
 
-    Each publisher numbers its messages. Which of several publishers a message is from,
-    rclpy does not tell; but each number follows an earlier one, and whichever is taken
-    for it, the gaps add up to the same in the end.
+    Each publisher numbers its messages. rclpy does not say which of several publishers
+    sent one; but each number follows an earlier one, and whichever is assumed, the gaps
+    add up to the same in the end.
 
     What is missing before the first message of a publisher leaves no gap, what one of
     several loses only later. Such doubt remains where the queue may have been full:

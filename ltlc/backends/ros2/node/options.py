@@ -137,7 +137,7 @@ def _refuse_unknown(node: Node) -> None:
 
 
 def _declared(node: Node, name: str, default: float | str | list[str]) -> Any:
-    """The value of a parameter, which nobody can change from now on."""
+    """The value of a parameter, which cannot be changed from now on."""
     descriptor = ParameterDescriptor(
         description=DESCRIPTIONS[name], read_only=True, dynamic_typing=True
     )

@@ -23,7 +23,7 @@ from ltlc.runtime.session import Session
 
 
 class Outlets:
-    """Where changes of verdict and the ends of runs are told."""
+    """Where changes of verdict and the ends of runs are reported."""
 
     KEPT = 1000
 
@@ -41,7 +41,7 @@ class Outlets:
 
     @property
     def are_recording(self) -> bool:
-        """Whether somebody wants to know what is judged."""
+        """Whether anyone listens to what is judged."""
         return self._recorder is not None
 
     def record(self, time: int, samples: Iterable[tuple[str, Value]] = ()) -> None:
@@ -69,7 +69,7 @@ class Outlets:
             self._guard(self._recorder.end, session.time)
 
     def words(self, session: Session) -> dict[str, Any]:
-        """What the guard is to tell if the node cannot, as data."""
+        """What the guard reports if the node cannot, as data."""
         jsonl, junit = self._options.jsonl, self._options.junit
         return {
             "jsonl": None if jsonl is None else str(jsonl),
@@ -94,7 +94,7 @@ class Outlets:
         return [*self._suites, junit(suite, session)]
 
     def close(self) -> None:
-        """Wait until those who listen have heard the last verdict."""
+        """Wait until all listeners have received the last verdict."""
         self._publisher.wait_for_all_acked(Duration(seconds=1))
 
     def line(self, line: str) -> None:

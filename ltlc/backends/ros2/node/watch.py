@@ -39,7 +39,7 @@ LetIn = Callable[[int], bool]
 
 
 class Watch:
-    """Judges what the topics say; a new run begins when the clock goes back.
+    """Judges the messages on the topics; a new run begins when the clock goes back.
 
     Times are ROS time, in ns: that at which the middleware received a message, or under
     `use_sim_time` that of the latest /clock. A run begins when there is a time, and, if
@@ -60,7 +60,7 @@ class Watch:
     BACKLOG = 1_000_000
     """How long, in ns, a message has waited if others may have to be judged before."""
     PUNCTUAL = 20_000_000
-    """How much later than what decides it, in ns, a verdict is told at the most."""
+    """How much later than what decides it, in ns, a verdict is reported at most."""
 
     def __init__(
         self,
@@ -141,7 +141,7 @@ class Watch:
         self._session.lose(topic, count)
 
     def patience(self) -> float:
-        """How long to wait for a message, in s of a clock that nobody sets."""
+        """How long to wait for a message, in s of a monotonic clock."""
         wait = self._next_housekeeping - time.monotonic()
         if self._due is not None and not self._clock.is_simulated:
             wait = min(wait, (self._due - self._clock.surely()) / SECOND)
@@ -218,7 +218,7 @@ class Watch:
         return True
 
     def _begin_anew(self, before: int, now: int) -> None:
-        """The clock has gone back: a new run is to begin."""
+        """The clock has gone back: a new run begins."""
         self._node.get_logger().warning(
             f"the clock went back from {seconds_text(before)} s "
             f"to {seconds_text(now)} s: the run ends and a new one begins"
@@ -262,7 +262,7 @@ class Watch:
             track.count_delay(delay)
 
     def keep_house(self) -> None:
-        """See now and then how things are, and tell."""
+        """Check and report the state now and then."""
         self._clock.look()
         start = time.monotonic()
         is_due = start >= max(self._next_diagnosis, self._rested)
@@ -289,7 +289,7 @@ class Watch:
             self._say_what_is_silent()
 
     def _note_misfit(self, listener: Listener) -> None:
-        """Let reports say if a topic is silent because its messages are others."""
+        """Have reports say if a topic is silent as its messages have another type."""
         absences, name = self._session.absences, listener.topic.name
         absences.pop(name, None)
         if listener.misfit:
@@ -327,7 +327,7 @@ class Watch:
         self._leave_words()
 
     def _leave_words(self) -> None:
-        """Let the guard know what to tell if the node hangs or dies from now on."""
+        """Tell the guard what to report if the node hangs or dies from now on."""
         verdicts = [*self._verdicts, *(track.verdict for track in self._session.tracks)]
         is_violated = Verdict.VIOLATED in verdicts
         words = self._outlets.words(self._session)
@@ -348,7 +348,7 @@ class Watch:
         self._discovered = 0.0
 
     def leave_the_rest(self) -> None:
-        """The node must end, though messages wait: who knows on which topics."""
+        """The node must end though messages wait, on topics that are not known."""
         for listener in self._listeners:
             self._lose(listener.topic.name, None)
 
@@ -360,7 +360,7 @@ class Watch:
         )
 
     def end(self) -> int:
-        """The last run ends; tell its verdicts. Returns the exit code of the node."""
+        """The last run ends; report its verdicts. Returns the exit code of the node."""
         self._end_run()
         if self._extracts:
             self._extracts.close(self._pulse.beat)

@@ -41,7 +41,7 @@ MOST_ITEMS = 10_000
 
 
 MALFORMED = (struct.error, ValueError, RuntimeError, MemoryError)
-"""What is raised where bytes are no message of the type that they should be."""
+"""Raised for bytes that are not a message of the expected type."""
 
 
 class UnsupportedError(Exception):
@@ -269,7 +269,7 @@ def _items(type_: Any, path: tuple[str, ...]) -> Iterator[Item]:
 
 
 def _parts(slot: Any, path: tuple[str, ...]) -> Iterator[Item]:
-    """What a field consists of; what ROS calls its type says what it is."""
+    """The parts of a field, by the name of its ROS type."""
     match type(slot).__name__:
         case "BasicType" if slot.typename in CODES:
             yield Item(path, CODES[slot.typename])

@@ -1,4 +1,4 @@
-"""What emitted C finds of a property of each id or of each message."""
+"""What emitted C and Rust find of a property of each id or of each message."""
 
 from __future__ import annotations
 
@@ -9,36 +9,29 @@ from benchmarks.differential import targets
 from benchmarks.differential.reference import Judged
 from benchmarks.differential.samples import Recording
 from benchmarks.differential.targets import Found, Monitors
-from ltlc.assurance.c_library import Library, compiler
-from ltlc.assurance.c_table import Table, TableLibrary
+from ltlc.assurance.c_table import Table
 from ltlc.assurance.compiled_program import VERDICTS
-from ltlc.backends.c import emit
-from ltlc.backends.spelling import NotInTargetError
+from ltlc.assurance.library import Loaded
 from ltlc.semantics.verdicts import Verdict
-from ltlc.specification.specification import topics
+from ltlc.specification.specification import Slicing, topics
 
 LIMIT = 255
 
 
-def load(text: str) -> Library | None:
-    """The table of the only property of `text`, which has no limit; None if it is refused, or there is no compiler."""
-    path, (head, _, property_) = compiler(), text.rpartition("p: each ")
+def load(text: str) -> Mapping[str, Loaded]:
+    """The table of the only property of `text`, which has no limit, in each language that has it, and a compiler."""
+    head, _, property_ = text.rpartition("p: each ")
     of, _, body = property_.partition(": ")
-    if path is None:
-        return None
     limited = targets.monitors(f"{head}p: each {of} limit {LIMIT}: {body}")
-    try:
-        written = emit(limited.compiled, limited.specification)
-    except NotInTargetError:
-        return None
-    return (TableLibrary if of.startswith("k of ") else Library)(written, path)
+    return {name: library for name, (library, _) in limited.libraries.items()}
 
 
 def found_by(
-    library: Library, of: Monitors, recording: Recording, expected: Mapping[Any, Judged]
+    library: Loaded, of: Monitors, recording: Recording, expected: Mapping[Any, Judged]
 ) -> dict[Any, Found] | None:
     """What is found of each id, or of all messages; None where a row has messages with and without an id at once."""
-    monitors = library.monitors()
+    slicing = of.compiled[0].specification.slicing
+    monitors = Table(library) if isinstance(slicing, Slicing) else library.monitors()
     known, read = {signal.name: signal for signal in library.numbers}, topics(of.compiled[0].specification)
     if not set(read).intersection(recording.rows[0].messages) and not isinstance(monitors, Table):
         monitors.begin(recording.rows[0].time)
