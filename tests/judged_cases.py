@@ -60,8 +60,8 @@ def drawn(seed: int) -> Entry:
     property_ = Draw(seed).property(depth=1 + seed % 2)
     if seed % 5 == 4:
         draw = Draw(seed)
-        some = (draw.property(depth=0) for _ in range(100))
-        property_ = After(MARK, next(each for each in some if without_intervals(each) == each))
+        bodies = (draw.property(depth=0) for _ in range(100))
+        property_ = After(MARK, next(each for each in bodies if without_intervals(each) == each))
     atoms = ordinary_atoms(encode(property_, EPISODE))
     chance = random.Random(seed)
     letters = [*letters_over(atoms)]

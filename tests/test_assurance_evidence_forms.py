@@ -140,8 +140,9 @@ def test_a_count_that_is_missing_or_there_twice_or_of_another_name_is_refused(tm
 def test_a_verdict_that_only_another_count_would_have_is_refused_by_the_judge(tmp_path: Path) -> None:
     bag = bag_of(tmp_path, rows("/b", True, False, True, True))
     document = evidence_of(COUNTED, bag)
-    early = BEGINNING + 2 * SECOND
-    lines = tuple(line for line in only(document).letters if isinstance(line, Line) and line.time <= early)
+    early, letters = BEGINNING + 2 * SECOND, only(document).letters
+    assert not isinstance(letters, Summed)
+    lines = tuple(line for line in letters if line.time <= early)
     forged = edited(document, letters=lines, until=early, decided=early)
     assert kinds(refusals(forged, COUNTED, bag)) == {"judge"}
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from functools import reduce
-
 from ltlc.assurance.evidence.conditions import numbered_scopes
 from ltlc.assurance.evidence.document import StatedScope
 from ltlc.assurance.evidence.parts import Opened as Since
@@ -26,8 +24,9 @@ class Opened:
     def __init__(self, of: PropertySpecification) -> None:
         self._names = [atom.name for atom in of.atoms]
         self._scopes = numbered_scopes(of)
-        operands = [part for clock in self._scopes for part in clock_operands(clock)]
-        events: Formula = reduce(And, operands, TRUE)
+        events: Formula = TRUE
+        for part in (part for clock in self._scopes for part in clock_operands(clock)):
+            events = And(events, part)
         self._run = TimedRun(trackers_of(events), news_that_counts(events), counts=counts_of(events))
         self._since: tuple[Since, ...] | None = None
         self._bits = 0

@@ -933,7 +933,7 @@ class Scope:
 
     def taken(self, is_step: Array) -> Array:
         """For each instant, at which one the value at the opening was taken: at itself unless it was open before."""
-        before = np.append(False, self.open(np.count_nonzero(is_step)))[np.cumsum(is_step) - is_step]
+        before = np.append(False, self.open(int(np.count_nonzero(is_step))))[np.cumsum(is_step) - is_step]
         return np.maximum.accumulate(np.where(before, 0, np.arange(len(is_step))))
 
     def check(self, count: int) -> None:
@@ -970,7 +970,7 @@ def run_of(claim: Section, recorded: Recording, head: Section, *, apart: bool) -
         letters = np.zeros(values.count, np.int64)
         for n, scope in enumerate(scopes, len(atoms)):
             scope.check(int(values.times[is_step].searchsorted(claim.time("until") or 0, "right")))
-            letters[is_step] |= scope.open(np.count_nonzero(is_step)).astype(np.int64) << n
+            letters[is_step] |= scope.open(int(np.count_nonzero(is_step))).astype(np.int64) << n
         news, messages = 0, {}
         for n, atom in enumerate(atoms):
             letters |= values.value(atom).now.astype(np.int64) << n

@@ -41,7 +41,7 @@ class LetteredSlices(Slices):
     def __init__(self, track: Track, session: Session, cut: Cut, ids: Ids, letters: Callable[[], Letters]) -> None:
         super().__init__(track, session, cut, ids, frozenset())
         self._new_letters = letters
-        self._kept: dict[Id, Letters] = {}
+        self._lettered: dict[Id, Letters] = {}
         self._ended: dict[Id, tuple[Slice, Nanoseconds]] = {}
         self._now = 0
 
@@ -61,14 +61,14 @@ class LetteredSlices(Slices):
         return [one for one, time in self._ended.values() if time == self._now]
 
     def _born(self, time: int, id_: Id) -> Slice:
-        self._kept[id_] = self._new_letters()
+        self._lettered[id_] = self._new_letters()
         return super()._born(time, id_)
 
     def _step(self, time: int, one: Slice) -> None:
         values, steps = self._look(one.known), self.track.steps
         super()._step(time, one)
         if self.track.steps > steps:
-            self._kept[one.id].step(time, self.track.property.given(values))
+            self._lettered[one.id].step(time, self.track.property.given(values))
 
     def _drop(self, one: Slice) -> None:
         if one.decided_at is not None:
@@ -77,9 +77,9 @@ class LetteredSlices(Slices):
 
     def stated(self, end: Nanoseconds) -> tuple[StatedSlice, ...] | str:
         """All slices of a run that ends then; or why evidence does not have them."""
-        if len(self._kept) > MOST_SLICES:
+        if len(self._lettered) > MOST_SLICES:
             return f"it is judged for more than {MOST_SLICES} ids"
-        return tuple(self._stated(id_, letters, end) for id_, letters in self._kept.items())
+        return tuple(self._stated(id_, letters, end) for id_, letters in self._lettered.items())
 
     def _stated(self, id_: Id, letters: Letters, end: Nanoseconds) -> StatedSlice:
         is_over = id_ in self._ended
