@@ -285,7 +285,7 @@ def test_a_cell_of_a_table_that_is_another_is_refused_if_the_digests_are_set_rig
     table.write_text("time,x\n0,1\n1,2\n")
     recordings = evidence_of(text, table).head.recordings
     code, [line] = said_of(replace(document, head=replace(document.head, recordings=recordings)), table)
-    assert (code, line) == (1, "c0: REFUSED: the run ends at 1000000000")
+    assert (code, line) == (1, "c0: REFUSED: stated: +1000000000 a0; computed: nothing")
 
 
 def seam(document: Document, text: str) -> list[str]:

@@ -1146,7 +1146,7 @@ def check_claim(claim: Section, recorded: Recording, head: Section, ends: int) -
         found = f"letters {count} sha256 {sha256(lines)}\n" if "letters" in claim.said else lines
         stated = claim.text[claim.text.index("\nsession ") + 1 : claim.text.index("\nuntil ") + 1]
         pairs = itertools.zip_longest(stated.split("\n"), f"session {run.session}\n{found}".split("\n"), fillvalue="")
-        wrong = [f"it says `{one}`, where `{other}` is right" for one, other in pairs if one != other]
+        wrong = [f"stated: {one or 'nothing'}; computed: {other or 'nothing'}" for one, other in pairs if one != other]
         if (verdict == "not_started") != (count == 0):
             wrong.append("it has started" if count else "it has not started")
         if not wrong:

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from pathlib import Path, PurePath
+from threading import Thread
 from typing import NamedTuple
 
 from ltlc.assurance.evidence.conditions import (
@@ -145,13 +145,23 @@ class Digests:
     """The digests of all files of a recording, which are computed while it is judged."""
 
     def __init__(self, path: Path) -> None:
-        self._pool = ThreadPoolExecutor(1)
-        self._files: list[Future[FileDigest]] = [self._pool.submit(digest_of, at, name) for name, at in files_of(path)]
-        self._pool.shutdown(wait=False)
+        self._path = path
+        self._files: tuple[FileDigest, ...] | OSError = ()
+        self._thread = Thread(target=self._compute, daemon=True)
+        self._thread.start()
+
+    def _compute(self) -> None:
+        try:
+            self._files = tuple(digest_of(at, name) for name, at in files_of(self._path))
+        except OSError as error:
+            self._files = error
 
     def files(self) -> tuple[FileDigest, ...]:
         """The files, as soon as their digests are known. Raises OSError."""
-        return tuple(each.result() for each in self._files)
+        self._thread.join()
+        if isinstance(self._files, OSError):
+            raise self._files
+        return self._files
 
 
 @dataclass(frozen=True)
