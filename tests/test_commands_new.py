@@ -337,7 +337,7 @@ def rows() -> dict[str, list[Any]]:
         "idle": [None] * 60,
         "min": seconds,
         "pos.x": seconds,
-        "/odom/pose/x": seconds,
+        "/odom/pose/strange": seconds,
     }
 
 
@@ -389,7 +389,50 @@ def test_the_table_that_it_was_made_of_passes_it(name: str, tmp_path: Path, caps
     for stated in ("never speed > 1.2", 'always mode in {"AUTO", "HAND"}', "always len(scan) == 3", "age(gear) <= "):
         assert stated in text
     omitted = text.partition("# Omitted:\n")[2]
-    assert re.findall(r"^# column `(\S+)`: ", omitted, re.MULTILINE) == ["idle", "min", "pos.x", "/odom/pose/x"]
+    assert re.findall(r"^# column `(\S+)`: ", omitted, re.MULTILINE) == ["idle", "min", "pos.x", "/odom/pose/strange"]
+
+
+def test_columns_by_topic_and_field_give_the_types_of_messages(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    columns = {
+        "__time": [1.7e9 + number / 10 for number in range(40)],
+        "/odom/header/stamp": [1.7e9] * 40,
+        "/odom/pose/pose/position/x": [number / 9 for number in range(40)],
+        "/odom/pose/pose/position/y": [1] * 40,
+        "/odom/twist/twist/linear/x": [math.sin(number) for number in range(40)],
+        "/r1/scan/ranges[0]": [2 + number % 3 for number in range(40)],
+        "/r1/scan/ranges[1]": [3] * 40,
+        "/go/data": ["true", "false"] * 20,
+        "/cmd/linear/x": [number % 5 for number in range(40)],
+        "/odd/nothing": [1] * 40,
+        "/late/header/stamp": [1] * 40,
+    }
+    with (tmp_path / "drive.csv").open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(columns)
+        writer.writerows(zip(*columns.values(), strict=True))
+    passes(tmp_path / "drive.csv", capsys)
+    assert main(["new", str(tmp_path / "drive.csv")]) == 0
+    text = capsys.readouterr().out
+    assert {line.partition("  #")[0] for line in re.findall(r"^decl .*", text, re.MULTILINE)} == {
+        "decl odom_speed /odom Odometry.twist.twist.linear.x",
+        "decl r1_scan /r1/scan LaserScan.ranges",
+        "decl go /go Bool.data",
+        "decl cmd_speed /cmd Twist.linear.x",
+    }
+    omitted = text.partition("# Omitted:\n")[2]
+    assert re.findall(r"^# column `(\S+)`: ", omitted, re.MULTILINE) == ["/odd/nothing", "/late/header/stamp"]
+
+
+def test_a_message_path_gives_the_types_of_columns(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "my_msgs" / "msg").mkdir(parents=True)
+    (tmp_path / "my_msgs" / "msg" / "Mission.msg").write_text("float64 progress_made\n")
+    (tmp_path / "a.csv").write_text("time,/mission/progress_made\n0,1\n1,2\n")
+    assert main(["new", str(tmp_path / "a.csv")]) == 2
+    assert "no known message type has such fields; `--msg-path`" in capsys.readouterr().err
+    assert main(["new", str(tmp_path / "a.csv"), "--msg-path", str(tmp_path / "my_msgs")]) == 0
+    assert "# /mission [my_msgs/msg/Mission]\n" in capsys.readouterr().out
 
 
 def test_a_column_whose_values_change_their_type_is_not_guessed(

@@ -68,3 +68,8 @@ def test_a_part_that_waits_for_what_it_does_not_read_is_noted(text: str, waiting
     studied = study_of(compiled(SIGNALS + text), EPISODE, BUDGET)
     found = list(waits_for_others.ask(studied, studied.subjects[0]))
     assert [each.message.partition(",")[0] for each in found] == waiting
+
+
+def test_a_property_of_each_id_is_shown_with_its_head() -> None:
+    text = "decl id /t JoyFeedback.id\ndecl x /t JoyFeedback.intensity\neach g of id limit 9: never x > 1\n"
+    assert explained(text).text == "each g of id limit 9: never x > 1"

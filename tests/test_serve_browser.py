@@ -406,6 +406,30 @@ def test_a_bag_that_is_dropped_is_the_run(browser: chromium.Browser, tmp_path: P
     assert cells(browser, "robot.velocity") == ["0", "0.5", "1", "1.5", "2", "2.5", "3", "3.5"]
 
 
+def test_a_table_with_columns_by_topic_and_field_is_the_run_when_it_is_dropped(browser: chromium.Browser) -> None:
+    write(browser, "decl speed /odom Odometry.twist.twist.linear.x\nnever speed > 2\n")
+    browser.wait_until("return document.querySelector('#table [data-name=\"speed\"]')")
+    drop(browser, "drive.csv", b"__time,/odom/twist/twist/linear/x\n1700000000.5,1\n1700000002,3\n")
+    wait_for_verdict(browser, "violated")
+    assert (cells(browser, "time"), cells(browser, "speed")) == (["0", "1.5"], ["1", "3"])
+
+
+def test_a_recording_is_opened_by_its_button_too(browser: chromium.Browser) -> None:
+    browser.run("document.getElementById('file').addEventListener('click', (event) => event.preventDefault())")
+    browser.run("document.getElementById('file').addEventListener('click', () => { window.asked = true; })")
+    browser.run("document.getElementById('open').click()")
+    assert browser.run("return window.asked")
+    browser.run(
+        """const [content] = arguments, files = new DataTransfer(), input = document.getElementById("file");
+        files.items.add(new File([content], "drive.jsonl"));
+        input.files = files.files;
+        input.dispatchEvent(new Event("change"));""",
+        '{"time": 0, "robot.velocity": 1}\n{"time": 2, "robot.velocity": 3}\n',
+    )
+    wait_for_verdict(browser, "violated")
+    assert cells(browser, "time") == ["0", "2"]
+
+
 def test_of_a_long_recording_that_is_dropped_the_page_says_what_is_not_there(browser: chromium.Browser) -> None:
     lines = "".join(f'{{"time": {number}, "robot.velocity": 1}}\n' for number in range(2500))
     drop(browser, "long.jsonl", lines.encode())

@@ -17,7 +17,7 @@ from ltlc.semantics.monitor import Monitor
 from ltlc.semantics.verdicts import Verdict
 from ltlc.semantics.words import Word
 from ltlc.specification.arrivals import waited_for
-from ltlc.specification.specification import PropertySpecification, topics, topics_of
+from ltlc.specification.specification import PropertySpecification, Slicing, topics, topics_of
 
 MOST_WORDS = 50
 """Of so many short runs with a verdict, the most instructive one is shown."""
@@ -82,7 +82,7 @@ def _in_words(subject: Subject, class_: str = "", runs: Mapping[Verdict, Example
     words, found = English(specification), runs or {}
     return Explanation(
         specification.label,
-        specification.text,
+        _stated(specification),
         words.sentence(),
         tuple(words.atoms()),
         topics(specification),
@@ -93,6 +93,16 @@ def _in_words(subject: Subject, class_: str = "", runs: Mapping[Verdict, Example
         tuple(example for example in found.values() if example is not None),
         tuple(verdict for verdict, example in found.items() if example is None),
     )
+
+
+def _stated(specification: PropertySpecification) -> str:
+    """The property as its author wrote it, with the head of an `each`."""
+    match specification.slicing:
+        case Slicing(keys, variable, limit):
+            most = "" if limit is None else f" limit {limit}"
+            return f"each {variable} of {', '.join(key.name for key in keys)}{most}: {specification.text}"
+        case _:
+            return specification.text
 
 
 def _beginning(specification: PropertySpecification) -> str:

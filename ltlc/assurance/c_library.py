@@ -62,9 +62,7 @@ def _glue(files: Files) -> Iterator[str]:
     yield f'#include "{files.stem}.h"'
     yield "size_t gate_size(int which);"
     yield f"size_t gate_size(int which) {{ return which == 0 ? sizeof({judge}) : sizeof({prefix}_samples); }}"
-    yield f"void gate_clear({prefix}_samples *s);"
     yield f"void gate_clear({prefix}_samples *s) {{ *s = ({prefix}_samples){{0}}; }}"
-    yield f"void gate_init({judge} *m);"
     yield f"void gate_init({judge} *m) {{ {stem}_init(m); }}"
     for name in ("begin", "advance"):
         call = (
@@ -72,13 +70,10 @@ def _glue(files: Files) -> Iterator[str]:
             if f"bool {stem}_{name}(" in header
             else "return m != 0 && time > INT64_MIN;"
         )
-        yield f"bool gate_{name}({judge} *m, int64_t time);"
         yield f"bool gate_{name}({judge} *m, int64_t time) {{ {call} }}"
     has_deadline = f"{stem}_next_deadline(" in header
     call = f"{stem}_next_deadline(m)" if has_deadline else f"m == 0 ? 0 : {prefix.upper()}_NEVER"
-    yield f"int64_t gate_next_deadline(const {judge} *m);"
     yield f"int64_t gate_next_deadline(const {judge} *m) {{ return {call}; }}"
-    yield f"void gate_set({prefix}_samples *s, int number, const void *value, size_t length);"
     yield f"void gate_set({prefix}_samples *s, int number, const void *value, size_t length)"
     yield "{ (void)length; (void)value; switch (number) {"
     for number, (signal, group) in enumerate(files.samples.group_of.items()):
@@ -103,10 +98,8 @@ def _glue(files: Files) -> Iterator[str]:
 
 def _of_monitors(prefix: str) -> Iterator[str]:
     """Steps of all properties, and what is known of each."""
-    yield f"bool gate_step({prefix}_monitors *m, int64_t time, const {prefix}_samples *s);"
     yield f"bool gate_step({prefix}_monitors *m, int64_t time, const {prefix}_samples *s)"
     yield f"{{ return {prefix}_step(m, time, s); }}"
-    yield f"void gate_show(const {prefix}_monitors *m, int property, int64_t *shown);"
     yield f"void gate_show(const {prefix}_monitors *m, int property, int64_t *shown) {{"
     yield f"const {prefix}_property p = ({prefix}_property)property; shown[0] = (int64_t){prefix}_verdict_of(m, p);"
     yield f"shown[1] = {prefix}_steps_of(m, p); shown[2] = {prefix}_invalid_of(m, p);"
@@ -116,16 +109,12 @@ def _of_monitors(prefix: str) -> Iterator[str]:
 def _of_table(prefix: str, table: Table) -> Iterator[str]:
     """Steps of all ids, if there are any, and of one; what is known of all, and of one."""
     share = f"{prefix}_ids_share(t, time, s)" if table.shared else "t == 0 && time == 0 && s == 0"
-    yield f"bool gate_step({prefix}_ids *t, int64_t time, const {prefix}_samples *s);"
     yield f"bool gate_step({prefix}_ids *t, int64_t time, const {prefix}_samples *s) {{ return {share}; }}"
-    yield f"bool gate_step_of({prefix}_ids *t, int64_t time, int64_t id, const {prefix}_samples *s);"
     yield f"bool gate_step_of({prefix}_ids *t, int64_t time, int64_t id, const {prefix}_samples *s)"
     yield f"{{ return {prefix}_ids_step(t, time, ({table.key})id, s); }}"
-    yield f"void gate_show(const {prefix}_ids *t, int property, int64_t *shown);"
     yield f"void gate_show(const {prefix}_ids *t, int property, int64_t *shown)"
     yield f"{{ shown[0] = (int64_t){prefix}_ids_verdict(t); shown[1] = {prefix}_left_out_of(t);"
     yield "shown[2] = shown[3] = property; }"
-    yield f"bool gate_show_of(const {prefix}_ids *t, int64_t id, int64_t *shown);"
     yield f"bool gate_show_of(const {prefix}_ids *t, int64_t id, int64_t *shown) {{"
     yield f"const {prefix}_slice *const one = {prefix}_slice_of(t, ({table.key})id); if (one == 0) {{ return false; }}"
     yield f"const {prefix}_property p = ({prefix}_property)0;"
@@ -138,10 +127,8 @@ def _of_instances(prefix: str, table: OpenTable) -> Iterator[str]:
 
     By number, how many found no place, were no step, and since when the property is violated.
     """
-    yield f"bool gate_step({prefix}_instances *t, int64_t time, const {prefix}_samples *s);"
     yield f"bool gate_step({prefix}_instances *t, int64_t time, const {prefix}_samples *s)"
     yield f"{{ return {prefix}_instances_step(t, time, s); }}"
-    yield f"void gate_show(const {prefix}_instances *t, int property, int64_t *shown);"
     yield f"void gate_show(const {prefix}_instances *t, int property, int64_t *shown)"
     yield f"{{ shown[0] = (int64_t){prefix}_instances_verdict(t); shown[1] = t->violated; shown[2] = 0;"
     yield "for (uint32_t i = 0; i < t->count; i++) {"

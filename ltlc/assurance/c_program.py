@@ -1,4 +1,4 @@
-"""The emitted C of a property, or the Rust that says the same, as something that can be replayed."""
+"""The emitted C of a property, or the equivalent Rust, as something that can be replayed."""
 
 from __future__ import annotations
 

@@ -59,7 +59,7 @@ def rust_programs(
 
 
 def _program(libraries: Libraries, number: int, files: Files, messages: Messages) -> Program:
-    """The property with a number, in what says the same as emitted C."""
+    """The property with a number, in what is equivalent to emitted C."""
     match files.table:
         case None:
             return CProgram(libraries, number, files)

@@ -14,7 +14,7 @@ from ltlc.assurance.library import Loaded, Monitors
 from ltlc.assurance.messages import Messages
 from ltlc.assurance.replay import Id, Run, Shown, Stepper
 from ltlc.assurance.sliced_traffic import SlicedTraffic, Told
-from ltlc.assurance.traffic import Begun, Event, Heard, Passed, Quiet, Settings, Together
+from ltlc.assurance.traffic import Begun, Event, Settings, Together
 from ltlc.assurance.values import Samples
 from ltlc.compiler import Compiled
 from ltlc.runtime.times import NEVER
@@ -26,7 +26,7 @@ from ltlc.specification.specification import Instances, Slicing
 
 
 class Table(Monitors):
-    """A table of ids in a library in one run; what is said of monitors is said of all ids."""
+    """A table of ids in a library in one run; as a monitor, but of all ids."""
 
     def __init__(self, library: Loaded) -> None:
         super().__init__(library)
@@ -96,7 +96,7 @@ class InstancesProgram(CProgram):
         instances = self.libraries.of(settings).monitors()
 
         def step(event: Event) -> Shown:
-            if not (_rings(instances, event.time) if isinstance(event, Quiet) else take(instances, event)):
+            if not take(instances, event):
                 raise RuntimeError(f"{event} is refused")
             require_refused(instances, event)
             verdict, failed, owing, _ = instances.show(0)
@@ -113,27 +113,12 @@ def _take(table: Table, event: Event) -> None:
         case Told(time, said, parts):
             _require_refused(table, time)
             is_taken = all(table.step_of(time, _whole(i.id), dict(sample), said.topic) for i, sample in parts)
-        case Heard(time, said):
-            is_taken = table.step(time, dict(said.sample), [said.topic])
-        case Passed(time):
-            is_taken = table.advance(time)
-        case Quiet(time):
-            is_taken = _rings(table, time)
         case Together():
             raise TypeError("a message of an id comes alone")
+        case _:
+            is_taken = take(table, event)
     if not is_taken:
         raise RuntimeError(f"{event} is refused")
-
-
-def _rings(table: Monitors, until: Nanoseconds) -> bool:
-    """The timer rings when it should, up to a time; whether that ends."""
-    rang = None
-    while (due := table.next_deadline()) <= until:
-        if due == rang:
-            return False
-        table.advance(due)
-        rang = due
-    return True
 
 
 def _require_refused(table: Table, now: Nanoseconds) -> None:

@@ -11,7 +11,7 @@ from ltlc.assurance.strategies import Strategies
 from ltlc.assurance.tableau import MOST_EDGES, MOST_NODES, Tableau, TooLargeError
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.certificate import Certificate, Level, Place, is_run
-from ltlc.semantics.diagrams import Diagram
+from ltlc.semantics.diagrams import Diagram, rows
 from ltlc.semantics.lasso import holds_on_lasso
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.monitor import Monitor
@@ -152,24 +152,12 @@ class _Edges:
         self.monitor = monitor
         self.residuals = residuals
         self.diagrams = residuals.diagrams
-        self._built: dict[int, Diagram] = {}
-
-    def diagram(self, target: int) -> Diagram:
-        """A target of the monitor as a diagram with states as values."""
-        if target not in self._built:
-            if target >= 0:
-                self._built[target] = self.diagrams.terminal(("state", target))
-            else:
-                atom, low, high = self.monitor.decisions[~target]
-                self._built[target] = self.diagrams.choose(
-                    self.diagrams.variable(atom), self.diagram(high), self.diagram(low)
-                )
-        return self._built[target]
+        self._row = rows(self.diagrams, monitor.decisions, self.diagrams.variable)
 
     def successors(self, state: int, letters: Diagram, progressed: Diagram) -> Iterator[tuple[int, Diagram]]:
         """Each state after `state` with each residual that `letters` leave of `progressed` there."""
         seen: set[tuple[Diagram, ...]] = set()
-        stack = [(letters, self.diagram(self.monitor.edges[state]), progressed)]
+        stack = [(letters, self._row(self.monitor.edges[state]), progressed)]
         while stack:
             current = stack.pop()
             if current in seen or current[0] == self.diagrams.false:
@@ -177,7 +165,7 @@ class _Edges:
             seen.add(current)
             level = min(self._atom(diagram) for diagram in current)
             if level == len(self.residuals.atoms):
-                yield self.diagrams.value(current[1])[1], current[2]
+                yield self.diagrams.value(current[1]), current[2]
                 continue
             stack.append(self._side(current, level, high=False))
             stack.append(self._side(current, level, high=True))
@@ -200,9 +188,9 @@ class _Edges:
 
     def letters_to(self, state: int, letters: Diagram) -> dict[int, Letter]:
         """One of `letters` to each state that can come after `state` by them."""
-        target = self.diagrams.choose(letters, self.diagram(self.monitor.edges[state]), self.diagrams.false)
+        target = self.diagrams.choose(letters, self._row(self.monitor.edges[state]), self.diagrams.false)
         left = self.residuals.after_letters(target)
-        return {self.diagrams.value(terminal)[1]: letter for terminal, letter in left.items()}
+        return {self.diagrams.value(terminal): letter for terminal, letter in left.items()}
 
     def settled_words(self, state: int, clocks: Clocks) -> Iterator[Lasso]:
         """A shortest run from `state` to a verdict of either kind, its last letter repeated forever as time goes on.

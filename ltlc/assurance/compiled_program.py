@@ -10,7 +10,7 @@ from typing import Any
 from ltlc.assurance.courses import Courses
 from ltlc.assurance.library import Loaded, Monitors
 from ltlc.assurance.replay import Run, Shown, Stepper
-from ltlc.assurance.traffic import Begun, Event, Heard, Passed, Quiet, Settings, Together, Traffic
+from ltlc.assurance.traffic import Begun, Event, Heard, Passed, Quiet, Settings, Together, Traffic, rings
 from ltlc.assurance.values import PERIOD, RATE, Samples
 from ltlc.compiler import Compiled
 from ltlc.runtime.times import NEVER
@@ -87,14 +87,9 @@ class CompiledProgram:
                 moments.append((time, VERDICTS[now].value))
             before = now
 
-        rang = None
-        until = event.time + isinstance(event, Quiet)
-        while (due := monitors.next_deadline()) < until:
-            if due == rang:
-                raise RuntimeError(f"the next deadline is {due} ns again and again")
+        for due in rings(monitors.next_deadline, event.time - (not isinstance(event, Quiet))):
             monitors.advance(due)
             settle(due)
-            rang = due
         if not isinstance(event, Quiet):
             take(monitors, event)
         settle(event.time)
@@ -113,8 +108,8 @@ def take(monitors: Monitors, event: Event) -> bool:
         case Passed(time):
             return monitors.advance(time)
         case Quiet(time):
-            while monitors.next_deadline() <= time:
-                monitors.advance(monitors.next_deadline())
+            for due in rings(monitors.next_deadline, time):
+                monitors.advance(due)
             return True
 
 

@@ -83,7 +83,7 @@ class Origins:
         self.awaited = [each for each in self.wanted if each not in self.excused]
         self.parts: dict[Signal, tuple[Input, ...]] = {}
         self.topics: dict[Signal, frozenset[str]] = dict.fromkeys(sources, frozenset())
-        """The topics whose messages, whatever they say, can bring a signal a sample."""
+        """The topics whose messages can bring a signal a sample."""
         self.sources_of: dict[Signal, tuple[Signal, ...]] = {signal: (signal,) for signal in sources}
         for each in self.wanted:
             self._enter(each.signal)
@@ -97,7 +97,7 @@ class Origins:
         self.reach = max((self._reach(each) for each in self.wanted), default=1)
         """Over how many samples of the sources, the latest included, the property looks back, openings apart."""
         self.remembers = bool(self.clocks) or any(signal.is_taken for signal in self.parts)
-        """Whether something long ago may matter, as a value at an opening, or that there is none yet."""
+        """Whether something long ago may matter, such as a value at an opening, or its absence."""
 
     def _enter(self, signal: Signal) -> None:
         if signal in self.sources_of:

@@ -29,7 +29,7 @@ BUDGET = Budget(seconds=60.0, megabytes=2048)
 
 
 class CompilerError(Exception):
-    """The compiler does not accept what was emitted; the text is what it says."""
+    """The compiler rejects what was emitted; the text is its message."""
 
 
 class Loaded:
@@ -142,7 +142,7 @@ def load(command: Sequence[str], folder: Path) -> Any:
 
 
 def _run(command: Sequence[str], folder: Path) -> str:
-    """What the command says; nothing if all is well."""
+    """The message of the command; empty if all is well."""
     environment = {**os.environ, "LC_ALL": "C"}
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False, env=environment)
     return done.stderr or ("" if done.returncode == 0 else f"the compiler ends with {done.returncode}")

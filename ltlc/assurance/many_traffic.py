@@ -75,7 +75,7 @@ class ManyTraffic(Traffic):
         yield Passed(time + gaps[-1])
 
     def sample(self, topic: str) -> Sample:
-        """What a message on `topic` says: at the edge of a condition, or at random."""
+        """The contents of a message on `topic`: at the edge of a condition, or random."""
         chance, known = self.samples.chance, list(self.samples.by_letter(self.samples.start).values())
         frame = chance.choice(chance.choice(known)) if known and chance.random() < 3 / 4 else self.samples.draw()
         return self.sources.on(topic, self.sources.without_entries(frame.sample, chance))

@@ -12,9 +12,9 @@ from typing import NamedTuple
 from ltlc.assurance.controls import control_of
 from ltlc.compiler import Compiled
 from ltlc.semantics.control import Control, Followed, Outcome, Pair, Way
-from ltlc.semantics.diagrams import Diagram, Diagrams, of_predicate
+from ltlc.semantics.diagrams import Diagram, Diagrams, of_predicate, rows
 from ltlc.semantics.ltl import FALSE, TRUE, And, Atom, Formula, Not, Or, atoms
-from ltlc.semantics.monitor import Monitor, Target
+from ltlc.semantics.monitor import Monitor
 from ltlc.semantics.reset_machine import Clocks, ResetMachine
 from ltlc.semantics.timed_atoms import Age
 from ltlc.semantics.trackers import Case, Phase, State
@@ -67,14 +67,19 @@ class _Search:
         self.diagrams = Diagrams()
         self.levels: dict[str | int, int] = {}
         self.allowed = self.of(assumption)
-        self.ways: dict[Way, Diagram] = {}
-        self.targets: dict[Target, Diagram] = {}
+        branches = [(asked, if_not, if_so) for asked, if_so, if_not in control.branches]
+        self.of_way = rows(self.diagrams, branches, self.asking, control.outcomes.__getitem__)
+        self.of_target = rows(self.diagrams, monitor.decisions, lambda atom: self.asking(monitor.atoms[atom]))
         self.reached: dict[_Place, Diagram] = {}
         self.todo: list[_Place] = []
 
     def level(self, asked: str | int) -> int:
         """The level of an atom, or of whether a clock is late."""
         return self.levels.setdefault(asked, len(self.levels))
+
+    def asking(self, asked: str | int) -> Diagram:
+        """Where that is so."""
+        return self.diagrams.variable(self.level(asked))
 
     def of(self, predicate: Formula) -> Diagram:
         """The letters with `predicate`."""
@@ -178,29 +183,6 @@ class _Search:
     def narrowed(self, letters: Diagram, predicate: Formula) -> Diagram | None:
         found = self.diagrams.conjunction(letters, self.of(predicate))
         return None if found == self.diagrams.false else found
-
-    def of_way(self, way: Way) -> Diagram:
-        """Where letters lead from `way`, as a diagram whose values are outcomes."""
-        if way not in self.ways:
-            if way >= 0:
-                self.ways[way] = self.diagrams.terminal(self.control.outcomes[way])
-            else:
-                asked, if_so, if_not = self.control.branches[~way]
-                self.ways[way] = self.asking(asked, self.of_way(if_so), self.of_way(if_not))
-        return self.ways[way]
-
-    def of_target(self, target: Target) -> Diagram:
-        """Where letters lead from `target`, as a diagram whose values are states of the monitor."""
-        if target not in self.targets:
-            if target >= 0:
-                self.targets[target] = self.diagrams.terminal(target)
-            else:
-                atom, low, high = self.monitor.decisions[~target]
-                self.targets[target] = self.asking(self.monitor.atoms[atom], self.of_target(high), self.of_target(low))
-        return self.targets[target]
-
-    def asking(self, asked: str | int, if_so: Diagram, if_not: Diagram) -> Diagram:
-        return self.diagrams.choose(self.diagrams.variable(self.level(asked)), if_so, if_not)
 
     def predicate(self, letters: Diagram) -> Formula:
         """`letters` as a state predicate."""

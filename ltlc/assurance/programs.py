@@ -16,7 +16,7 @@ from ltlc.assurance.replay import Run, Shown, Stepper, settled
 from ltlc.assurance.sliced_traffic import SlicedTraffic
 from ltlc.assurance.sources import given
 from ltlc.assurance.timed_program import TimedClass
-from ltlc.assurance.traffic import Begun, Event, Heard, Passed, Quiet, Said, Settings, Together, Traffic
+from ltlc.assurance.traffic import Begun, Event, Heard, Passed, Quiet, Said, Settings, Together, Traffic, rings
 from ltlc.assurance.values import RATE, Frame, Samples
 from ltlc.backends.python import standalone_classes
 from ltlc.compiler import Compiled
@@ -31,7 +31,7 @@ class Program(Protocol):
     """The emitted code of one property."""
 
     def runs(self, compiled: Compiled, samples: Samples) -> Iterator[Run[Any]]:
-        """The runs on which it is judged; `samples` are of what its messages say."""
+        """The runs on which it is judged; `samples` are those of its messages."""
         ...
 
     def start(self, settings: Any) -> Stepper[Any]:
@@ -66,7 +66,7 @@ def programs(
 
 
 def _told(compiled: Compiled) -> list[Input]:
-    """What a standalone class is told at a step, which keeps the history itself."""
+    """The arguments of a step of a standalone class, which keeps the history itself."""
     inputs = compiled.specification.inputs()
     return [*dict.fromkeys(i if isinstance(i, New) else Current(i.signal) for i in inputs)]
 
@@ -202,14 +202,7 @@ class Monitored:
                 raise TypeError("a node takes messages one by one")
             case Quiet():
                 pass
-        changes: list[Any] = []
-        rang = None
-        while (due := rows.due()) is not None and due <= event.time:
-            if due == rang:
-                raise RuntimeError(f"the timer rings at {due} ns again and again")
-            changes += rows.advance(due)
-            rang = due
-        return changes
+        return [change for due in rings(rows.due, event.time) for change in rows.advance(due)]
 
     @cached_property
     def _plan(self) -> Any:
@@ -228,7 +221,7 @@ class Monitored:
         return replace(plan, signals=tuple(emitted.by_name[name] for name in kept), properties=(monitored,))
 
     def read(self, said: Said) -> Sequence[Any]:
-        """What the emitted reader takes from a message that says this."""
+        """What the emitted reader takes from a message with these contents."""
         if said not in self._values:
             topic = self.emitted.topics[said.topic]
             message = self.messages.build(topic.message, said.content)

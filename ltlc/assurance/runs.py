@@ -124,7 +124,7 @@ def short_runs(letters: Sequence[Letter]) -> Iterator[Word]:
 
 
 def transition_runs(monitor: Monitor, letters: Sequence[Letter]) -> Iterator[Word]:
-    """To each state, then each letter, or each two, then each word that tells two states apart."""
+    """To each state, then each letter, or each two, then each word that distinguishes two states."""
     access = access_words(monitor, letters)
     suffixes = distinguishing_words(monitor, letters)
     for length in (1, 1 + MORE_STATES):
@@ -163,7 +163,7 @@ def access_words(monitor: Monitor, letters: Sequence[Letter]) -> dict[int, Word]
 
 
 def distinguishing_words(monitor: Monitor, letters: Sequence[Letter]) -> list[Word]:
-    """Words, the empty one among them, of which some one tells apart any two states that `letters` can tell apart."""
+    """Words, the empty one among them, that distinguish any two states that `letters` can distinguish."""
     words: list[Word] = [()]
     signatures: list[tuple[Verdict, ...]] = [(verdict,) for verdict in monitor.verdicts]
     for word in words:  # grows: where two states still go together, a letter before a word that splits their successors

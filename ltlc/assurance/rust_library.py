@@ -58,7 +58,7 @@ def _glue(file: File) -> Iterator[str]:
 
 
 def _call(file: File, name: str, arguments: str, otherwise: str) -> str:
-    """A call of what there may be, or what it comes to where there is no such function."""
+    """A call of a function that may be missing, or its result in that case."""
     table = file.c.table
     has_it = table is None or f" {file.c.prefix}_{table.stem}_{name}(" in file.c.header
     return f"(*m).{name}({arguments})" if has_it else f"let _ = m; {otherwise}"

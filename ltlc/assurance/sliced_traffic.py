@@ -28,7 +28,7 @@ MOST_ELEMENTS = 3
 
 @dataclass(frozen=True, slots=True)
 class Ident:
-    """An id: as it is told, as the property reads it, and as a message says it."""
+    """An id: as it is reported, as the property reads it, and as it is in a message."""
 
     id: Id
     value: Value
@@ -60,7 +60,7 @@ class SlicedTraffic(ManyTraffic):
         self._elements = {slicing.element_of(array): array for array in slicing.arrays}
         gone = {gone_name(key.name): _field(key).topic for key in slicing.keys}
         self.gone = {signal: gone[signal.name] for signal in self.sources.signals if signal.name in gone}
-        """What says that an id is gone, with the topic on which it is."""
+        """The signals that are true while an id is gone, each with the topic of its key."""
         self._ids = self._drawn_ids()
 
     def is_id(self, signal: Signal) -> bool:
@@ -95,7 +95,7 @@ class SlicedTraffic(ManyTraffic):
         return Told(time, Said(topic, self._content(topic, parts), parts[0][1] if parts else {}), parts)
 
     def _sample(self, topic: str) -> Sample:
-        """What a message on `topic` says, but for ids."""
+        """The contents of a message on `topic`, without ids."""
         return {s: v for s, v in self.sample(topic).items() if s not in self.gone and not self.is_id(s)}
 
     def _content(self, topic: str, parts: Sequence[Message]) -> Content:

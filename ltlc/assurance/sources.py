@@ -98,7 +98,7 @@ class Sources:
         return {signal: value for signal, value in sample.items() if self.places[signal].field.topic == topic}
 
     def content(self, sample: Sample) -> Content:
-        """What a message says in which the sources have these values."""
+        """A message in which the sources have these values."""
         return {self.places[signal].field.path: value for signal, value in sample.items()}
 
 
@@ -160,7 +160,7 @@ def _index(array: Field, key: Key) -> int | None:
 
 
 def _repeated(type_: FieldType, values: Value, length: int) -> tuple[Single, ...]:
-    """As many values, one after the other again and again; where there are none, what a field has by default."""
+    """So many values, repeated in turn; without any, the default of the field."""
     assert isinstance(values, tuple)
     default = "" if type_.base in STRINGS else type_.base not in ("bool", "boolean") and 0.0
     return ((values or (default,)) * length)[:length]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
@@ -115,6 +115,16 @@ class Settings:
 
     rate: float | None = None
     timeout: Nanoseconds | None = None
+
+
+def rings(due: Callable[[], Nanoseconds | None], until: Nanoseconds) -> Iterator[Nanoseconds]:
+    """When a timer rings up to a time, which is set anew to what is `due`. Raises RuntimeError if that is the same."""
+    rang = None
+    while (time := due()) is not None and time <= until:
+        if time == rang:
+            raise RuntimeError(f"the timer rings at {time} ns again and again")
+        yield time
+        rang = time
 
 
 class Traffic:

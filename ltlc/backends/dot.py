@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from ltlc.backends.guards import Cube, TooManyCubesError, cubes
 from ltlc.compiler import Compiled
-from ltlc.semantics.monitor import Monitor
+from ltlc.semantics.monitor import Monitor, below
 from ltlc.semantics.verdicts import Verdict
 from ltlc.specification.specification import Specification
 
@@ -52,25 +52,12 @@ def _edges(monitor: Monitor, state: int) -> Iterator[tuple[int, str]]:
     try:
         found = cubes(monitor, state)
     except TooManyCubesError:
-        for target in _targets(monitor, state):
-            yield target, "…"
+        for target in sorted(below(monitor.decisions, [monitor.edges[state]])):
+            if target >= 0:
+                yield target, "…"
         return
     for target, letters in found.items():
         yield target, "\nor ".join(_cube(monitor, cube) for cube in letters)
-
-
-def _targets(monitor: Monitor, state: int) -> list[int]:
-    """The states that a step from `state` can lead to."""
-    seen: set[int] = set()
-    stack = [monitor.edges[state]]
-    while stack:
-        target = stack.pop()
-        if target in seen:
-            continue
-        seen.add(target)
-        if target < 0:
-            stack += monitor.decisions[~target][1:]
-    return sorted(target for target in seen if target >= 0)
 
 
 def _cube(monitor: Monitor, cube: Cube) -> str:

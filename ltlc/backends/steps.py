@@ -11,7 +11,7 @@ from ltlc.backends.statements import If, Statement, choice, conjunction, disjunc
 from ltlc.backends.trees import Chain, Code, Text
 from ltlc.backends.wording import Wording
 from ltlc.program.machine import Base, Machine, Outcome
-from ltlc.semantics.monitor import Decision, Target
+from ltlc.semantics.monitor import Decision, Target, below
 
 Ask = Callable[[int, bool], Code]
 """Code for: the atom with this number holds, or, with False, does not hold."""
@@ -75,12 +75,8 @@ class Steps:
 
     def asked_atoms(self) -> Set[int]:
         """The atoms that some decision is about; others are about clocks."""
-        targets, seen = [target for target in self._edges if target is not None], set[Target]()
-        for target in targets:
-            if target < 0 and target not in seen:
-                seen.add(target)
-                targets += self._machine.decisions[~target][1:]
-        asked = {self._machine.decisions[~target].atom for target in seen}
+        targets = below(self._machine.decisions, (edge for edge in self._edges if edge is not None))
+        asked = {self._machine.decisions[~target].atom for target in targets if target < 0}
         return {atom for atom in asked if atom < len(self._machine.atoms)}
 
     def busy(self) -> dict[int, tuple[Statement, ...]]:

@@ -1,4 +1,4 @@
-"""Which states of a machine a new one cannot be told from: a slice in one of them need not be kept."""
+"""The states of a machine that behave like a new one: a slice in one of them need not be kept."""
 
 from __future__ import annotations
 

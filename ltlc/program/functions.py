@@ -17,7 +17,7 @@ from ltlc.specification.functions import Function as Named
 
 
 class Primitive(Enum):
-    """What an `Apply` computes; `ROWS` says the rest."""
+    """What an `Apply` computes; `ROWS` has the rest."""
 
     NEGATE, ABS = "negative", "absolute value"
     ADD, SUBTRACT, TIMES, OVER = "sum", "difference", "product", "quotient"

@@ -161,7 +161,7 @@ class Machine:
 
     @property
     def waits_for(self) -> tuple[Read, ...]:
-        """The inputs without a value of which there is no step."""
+        """The inputs that a step needs a value of."""
         excused = {each.input for each in self.excused}
         return tuple(each for each in self.inputs if not isinstance(each, News) and each not in excused)
 

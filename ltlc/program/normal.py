@@ -161,7 +161,7 @@ class Reached(NamedTuple):
 def reached(steps: Row, expires: Row, aging: Callable[[int], bool]) -> Reached:
     """What is reached from state 0; clock steps come where a clock runs, one comes in a nanosecond, or ages are asked.
 
-    They are asked in states that are `aging`. What would happen at a clock step in another state is nobody's to say.
+    They are asked in states that are `aging`. Clock steps in other states do not happen, and are not defined.
     """
     todo = [_Waiting(0, frozenset(), False, is_first=True)]
     seen, found = set(todo), set[int]()

@@ -129,7 +129,7 @@ def _scopes(specification: PropertySpecification) -> list[int]:
 def _registers(specification: PropertySpecification, closed_in: Sequence[Sequence[int]]) -> Iterator[Register]:
     """The values at openings, where `closed_in` has the scopes that are not open in each state.
 
-    Where no state tells, because the first verdict is permanent, they are the latest.
+    If no state determines it, because the first verdict is permanent, they are the latest.
     """
     for opening, scope in zip(specification.openings(), _scopes(specification), strict=True):
         closed = frozenset(q for q, scopes in enumerate(closed_in) if scope in scopes)

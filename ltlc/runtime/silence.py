@@ -23,8 +23,8 @@ def waiting_for(session: Session, track: Track) -> list[str]:
         missing = [i for i, value, waits in waited if waits and value is None]
     else:
         pairs = zip(inputs, track.property.waits, strict=True)
-        waited = (i for i, waits in pairs if waits and not isinstance(i, New))
-        missing = [Input(i.signal) for i in waited if absent(session, i.signal)]
+        read = (i for i, waits in pairs if waits and not isinstance(i, New))
+        missing = [Input(i.signal) for i in read if absent(session, i.signal)]
     return list(
         dict.fromkeys(r for i in missing for r in _remarks(session, sampler, i))
     )

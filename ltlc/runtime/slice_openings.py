@@ -41,19 +41,13 @@ class Openings:
 
     def _made_probe(self) -> Monitor | None:
         """A monitor to try steps of instances; None if states do not decide these."""
-        of, monitor = self.before.property, self.before.monitor
-        known = {
-            "state",
-            "verdict",
-            "invalid",
-            "due",
-            *(each.due for each in of.clocks),
-        }
+        of = self.before.property
         has_more = bool(of.kept or of.events or of.excused or of.ages)
         is_open = all(not each.inner and each.closes is None for each in of.scopes)
-        has_only = known == vars(monitor).keys() and not has_more
-        is_simple = len(of.clocks) == 1 and is_open and has_only
-        return forked(monitor) if is_simple else None
+        # A clock without bounds is that of a count, which has more than its state.
+        bounds = [each.bounds for each in of.clocks]
+        is_simple = len(bounds) == 1 and bool(bounds[0]) and is_open and not has_more
+        return forked(self.before.monitor) if is_simple else None
 
     def changed(
         self, time: int, values: Sequence[Value], steps: int, given: list[Slice]

@@ -7,7 +7,8 @@ guards, of step functions, and of Boolean combinations in general.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
+from functools import cache
 from typing import Any
 
 from ltlc.semantics.ltl import And, Atom, Formula, Not, Or, Truth
@@ -224,3 +225,27 @@ def of_diagrams(predicate: Formula, diagrams: Diagrams, atom: Callable[[str], Di
             return diagrams.disjunction(of_diagrams(left, diagrams, atom), of_diagrams(right, diagrams, atom))
         case _:
             raise TypeError(f"not a state predicate: {predicate!r}")
+
+
+def rows(
+    diagrams: Diagrams,
+    decisions: Sequence[tuple[Any, int, int]],
+    asked: Callable[[Any], Diagram],
+    value: Callable[[int], Hashable] = lambda end: end,
+) -> Callable[[int], Diagram]:
+    """Where the targets of a monitor, or of a machine, lead, as diagrams with a `value` for each end.
+
+    A target that is negative is a decision: the one with the number `~target` says what is asked, which is true where
+    `asked` is, where it leads if not, and where if so. What compiles has its own, so that what judges shares no
+    mistake with it.
+    """
+
+    @cache
+    def row(target: int) -> Diagram:
+        if target >= 0:
+            return diagrams.terminal(value(target))
+        question, low, high = decisions[~target]
+        then, otherwise = row(high), row(low)
+        return diagrams.choose(asked(question), then, otherwise)
+
+    return row

@@ -5,7 +5,7 @@ It is data, without Spot behind it: `ltlc.automata` makes monitors, the gate jud
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -58,3 +58,15 @@ class Monitor:
             state = self.step(state, letter)
             verdicts.append(self.verdicts[state])
         return verdicts
+
+
+def below(decisions: Sequence[Decision], targets: Iterable[Target]) -> list[Target]:
+    """These targets, and all that decisions lead to from them, each once."""
+    found = dict.fromkeys(targets)
+    todo = list(found)
+    for target in todo:
+        for after in decisions[~target][1:] if target < 0 else ():
+            if after not in found:
+                found[after] = None
+                todo.append(after)
+    return todo

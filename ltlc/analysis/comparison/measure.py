@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
 
 from ltlc.analysis.comparison.results import Monitorability, Monitored
 from ltlc.analysis.comparison.shortest import shortest_word
@@ -11,9 +10,9 @@ from ltlc.analysis.comparison.timed import earliest_in_time
 from ltlc.automata import translate
 from ltlc.automata.machine import Machine, letters_of
 from ltlc.semantics.alphabet import Alphabet
-from ltlc.semantics.diagrams import Diagram
+from ltlc.semantics.diagrams import rows
 from ltlc.semantics.ltl import Formula
-from ltlc.semantics.monitor import Monitor, Target
+from ltlc.semantics.monitor import Monitor, below
 from ltlc.semantics.timed_atoms import timed_atoms
 from ltlc.semantics.verdicts import Verdict
 from ltlc.semantics.words import Word
@@ -43,25 +42,12 @@ def monitorability(monitor: Monitor) -> Monitorability:
 
 def successors(monitor: Monitor, state: int) -> list[int]:
     """The states to which some letter leads from `state`, each once."""
-    return list(dict.fromkeys(_leaves(monitor, monitor.edges[state])))
+    return [target for target in below(monitor.decisions, [monitor.edges[state]]) if target >= 0]
 
 
 def edges(monitor: Monitor) -> int:
     """The number of pairs of a state and a successor of it."""
     return sum(len(successors(monitor, state)) for state in range(len(monitor.verdicts)))
-
-
-def _leaves(monitor: Monitor, target: Target) -> Iterator[int]:
-    pending, seen = [target], set()
-    while pending:
-        current = pending.pop()
-        if current in seen:
-            continue
-        seen.add(current)
-        if current >= 0:
-            yield current
-        else:
-            pending += [monitor.decisions[~current].high, monitor.decisions[~current].low]
 
 
 def earliest(monitor: Monitor, verdict: Verdict, formula: Formula, alphabet: Alphabet) -> Word | None:
@@ -74,15 +60,5 @@ def earliest(monitor: Monitor, verdict: Verdict, formula: Formula, alphabet: Alp
 def machine_of(monitor: Monitor, formula: Formula, alphabet: Alphabet) -> Machine:
     """`monitor`, made of `formula`, as a machine that knows which letters of `alphabet` exist."""
     letters = letters_of(formula, alphabet)
-    diagrams = letters.diagrams
-    known: dict[Target, Diagram] = {}
-
-    def lift(target: Target) -> Diagram:
-        if target >= 0:
-            return diagrams.terminal(target)
-        if target not in known:
-            decision = monitor.decisions[~target]
-            known[target] = diagrams.decision(decision.atom, lift(decision.low), lift(decision.high))
-        return known[target]
-
-    return Machine(letters, list(monitor.verdicts), [letters.restrict(lift(target)) for target in monitor.edges])
+    row = rows(letters.diagrams, monitor.decisions, letters.diagrams.variable)
+    return Machine(letters, list(monitor.verdicts), [letters.restrict(row(target)) for target in monitor.edges])

@@ -65,13 +65,7 @@ RELATIONS = {
     Relation.INCOMPARABLE: "is incomparable with",
 }
 
-VERDICTS = {
-    Verdict.VIOLATED: "violated",
-    Verdict.PRESUMABLY_VIOLATED: "presumably violated",
-    Verdict.PRESUMABLY_SATISFIED: "presumably satisfied",
-    Verdict.SATISFIED: "satisfied",
-    Verdict.NOT_STARTED: "not started",
-}
+VERDICTS = {verdict: verdict.value.replace("_", " ") for verdict in Verdict}
 
 
 def blocks_of(answers: Sequence[Answer], recordings: Sequence[Sequence[Recorded]] = ()) -> Iterator[Block]:

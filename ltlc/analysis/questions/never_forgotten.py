@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, assert_never
 from ltlc.analysis.findings import Finding
 from ltlc.analysis.subjects import Study, Subject
 from ltlc.automata import translate
+from ltlc.semantics.monitor import below
 from ltlc.semantics.verdicts import Verdict
 from ltlc.specification.expressions import Signal, ValueType
 from ltlc.specification.specification import MOST_IDS, Instances, Slicing
@@ -98,8 +99,4 @@ def _always_leads(machine: Machine, dropped: Collection[int]) -> bool:
 
 def _successors(machine: Machine, state: State) -> Iterator[int]:
     targets = [state.step] if state.expire is None else [state.step, state.expire]
-    for target in targets:
-        if target >= 0:
-            yield machine.outcomes[target].state
-        else:
-            targets += machine.decisions[~target][1:]
+    return (machine.outcomes[end].state for end in below(machine.decisions, targets) if end >= 0)

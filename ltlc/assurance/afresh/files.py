@@ -20,7 +20,7 @@ from ltlc.compiler import Compiled
 from ltlc.specification.specification import Specification
 
 MOST_CHARACTERS = 100_000
-"""How many more a file may have than twice what is emitted: what is larger is not taken apart."""
+"""A file may have so many more than twice what is emitted: larger ones are not read."""
 
 OF_C = (".h", ".c", ".hpp")
 
@@ -47,7 +47,7 @@ class Code:
 
     @property
     def version(self) -> str | None:
-        """The version of ltlc that the files say has made them."""
+        """The version of ltlc that made the files, as they say."""
         heads = (" ".join(text[:4000].split()) + " " for text in self.texts.values())
         return next((found[1] for found in map(_MADE_BY.search, heads) if found), None)
 
@@ -78,13 +78,17 @@ def _package_at(folder: Path) -> Code:
 
 
 def _read(path: Path) -> str:
+    return text_at(path, "a file of code").replace("\r\n", "\n")
+
+
+def text_at(path: Path, what: str) -> str:
+    """The text of the file at `path`, which is to be `what`. Raises UnusableError."""
     try:
-        text = path.read_bytes().decode("utf-8").replace("\r\n", "\n")
+        return path.read_bytes().decode("utf-8")
     except OSError as error:
         raise UnusableError(f"{path} cannot be read: {error.strerror or error}") from None
     except UnicodeDecodeError:
-        raise UnusableError(f"{path} is not a file of code: it is not UTF-8 text") from None
-    return text
+        raise UnusableError(f"{path} is not {what}: it is not UTF-8 text") from None
 
 
 def emitted(code: Code, compiled: Sequence[Compiled], specification: Specification) -> Mapping[str, str]:
@@ -119,7 +123,7 @@ def _metadata(code: Code) -> Metadata:
 
 
 def _called(specification: Specification, code: Code) -> Specification:
-    """The specification under the name of which the files say that they were made: nodes are called after it."""
+    """The specification under the name in the files, after which nodes are named."""
     text, pattern = code.texts.get("package.xml", ""), _PACKAGE_OF
     if code.target == "ros2":
         (text,), pattern = code.texts.values(), _NODE_OF

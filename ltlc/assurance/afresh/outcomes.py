@@ -19,7 +19,7 @@ class Equal:
 
 @dataclass(frozen=True, slots=True)
 class Unequal:
-    """What differs first, or why that cannot be said; `line` is that of the file, `function` the one it is in."""
+    """What differs first, or why that is unknown; `line` is that of the file, `function` the one it is in."""
 
     reason: str
     line: int | None = None

@@ -32,7 +32,7 @@ def is_read(name: str) -> bool:
 
 
 def compare(name: str, found: str, emitted: str) -> Equal | Unequal:
-    """Whether a file that is not Python says the same."""
+    """Whether a file that is not Python has the same contents."""
     suffix = PurePath(name).suffix
     if suffix in PROSE:
         what = "the runs that `colcon test` replays" if suffix == ".json" else "its preprocessor directives"
@@ -50,14 +50,14 @@ def compare(name: str, found: str, emitted: str) -> Equal | Unequal:
 
 
 class _Part(NamedTuple):
-    """Something that a file says, and in which line."""
+    """A part of a file, and its line."""
 
     line: int
     said: tuple[object, ...]
 
 
 def _of_text(text: str) -> Iterator[_Part]:
-    """The lines that say something; blanks at their beginning count."""
+    """The lines that are not blank; white space at their beginning counts."""
     return (_Part(number, (line.rstrip(),)) for number, line in enumerate(text.split("\n"), 1) if line.strip())
 
 

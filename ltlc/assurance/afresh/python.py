@@ -77,7 +77,7 @@ def _methods(node: ast.ClassDef) -> bool:
 
 
 class _Part(NamedTuple):
-    """A part of a tree, by what it says: with the innermost node around it that has a line, and the function."""
+    """A part of a tree by its contents, with the innermost node around it that has a line, and the function."""
 
     said: object
     node: ast.AST | None

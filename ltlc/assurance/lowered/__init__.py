@@ -1,1 +1,1 @@
-"""Lowered machines against certified monitors: the atoms as the specification says them, the control on diagrams."""
+"""Lowered machines against certified monitors: the atoms as in the specification, the control on diagrams."""

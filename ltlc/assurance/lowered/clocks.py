@@ -60,5 +60,5 @@ def due_after(tracker: Tracker, before: State, case: Case, due: Moment, by_time:
 
 
 def is_behind(tracker: Tracker, case: Case) -> bool:
-    """Whether it says of `previously p` what a nanosecond later is no more so."""
+    """Whether it is an answer of `previously p` that changes a nanosecond later."""
     return isinstance(tracker.subject, Previously) and bool(case.holding) != (case.state == ALWAYS)

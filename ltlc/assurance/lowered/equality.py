@@ -25,8 +25,8 @@ from ltlc.backends.python.expressions import python_speller
 from ltlc.program.expressions import Expression, reads_of
 from ltlc.program.machine import Age, Base, Clock, Machine, Outcome
 from ltlc.program.normal import reached
-from ltlc.semantics.diagrams import Diagram
-from ltlc.semantics.monitor import Target
+from ltlc.semantics.diagrams import Diagram, rows
+from ltlc.semantics.monitor import Target, below
 from ltlc.semantics.reset_machine import Clocks, ResetMachine
 from ltlc.semantics.timed_atoms import Age as AgeAtom
 from ltlc.semantics.timed_atoms import Occurred, timed_atoms
@@ -103,7 +103,7 @@ class _Comparison:
         self.questions = [self._holds(atom) for atom in machine.atoms]
         asked = [*self.due.values(), *self.counts.values()]
         self.questions += [self.diagrams.variable(self.letters.level(moment)) for moment in asked]
-        self.rows: dict[Target, Diagram] = {}
+        self._row = rows(self.diagrams, machine.decisions, self.questions.__getitem__, machine.outcomes.__getitem__)
         self.reached: dict[Place, Diagram] = {}
         self.todo: list[Place] = []
 
@@ -118,18 +118,8 @@ class _Comparison:
             written = python_speller({read: read.signal for read in reads_of(atom)}).code(atom, True)
             raise DiffersError(f"`{flat(written)}`: {error}") from None
 
-    def _row(self, target: Target) -> Diagram:
-        """Where a target of the machine leads: the values are outcomes."""
-        if target not in self.rows:
-            if target >= 0:
-                self.rows[target] = self.diagrams.terminal(self.machine.outcomes[target])
-            else:
-                question, low, high = self.machine.decisions[~target]
-                self.rows[target] = self.diagrams.choose(self.questions[question], self._row(high), self._row(low))
-        return self.rows[target]
-
     def require_reads(self, judged: Judged) -> None:
-        """What is read, kept, counted and asked not to be NaN is what the property says. Raises DiffersError."""
+        """Raise DiffersError unless what is read, kept, counted and asked not to be NaN is as in the property."""
         machine = self.machine
         if machine.inputs != tuple(map(said, judged.specification.inputs())):
             raise DiffersError("other inputs are read")
@@ -196,7 +186,7 @@ class _Comparison:
             self.todo.append(place)
 
     def require_states(self) -> None:
-        """Something leads to every state, which says where clock steps lead if one can come. Raises DiffersError."""
+        """Raise DiffersError unless every state is reached, and defines clock steps if there can be one."""
         steps = [self._outcomes(state.step) for state in self.machine.states]
         expires = [[] if state.expire is None else self._outcomes(state.expire) for state in self.machine.states]
         states = enumerate(self.machine.states)
@@ -212,11 +202,7 @@ class _Comparison:
 
     def _outcomes(self, target: Target) -> list[Outcome]:
         """Where `target` leads by the machine alone, whatever its atoms mean."""
-        todo, found = [target], set[Target]()
-        while todo:
-            each = todo.pop()
-            todo += self.machine.decisions[~each][1:] if each < 0 and each not in found else ()
-            found.add(each)
+        found = below(self.machine.decisions, [target])
         return [self.machine.outcomes[each] for each in found if each >= 0]
 
     def waits(self, place: Place) -> bool:

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from ltlc.assurance.lowered.clocks import Moment
 from ltlc.assurance.lowered.meaning import compared, said, truth
 from ltlc.assurance.lowered.truths import DiffersError, Truths
-from ltlc.semantics.diagrams import Diagram, Diagrams, of_diagrams
+from ltlc.semantics.diagrams import Diagram, Diagrams, of_diagrams, rows
 from ltlc.semantics.ltl import Formula
-from ltlc.semantics.monitor import Monitor, Target
+from ltlc.semantics.monitor import Monitor
 from ltlc.semantics.reset_machine import Clocks, ResetMachine
 from ltlc.semantics.timed_atoms import Age, atoms_within, messages_of
 from ltlc.semantics.trackers import Case
@@ -66,7 +66,9 @@ class Letters:
         if unknown:
             raise DiffersError(f"the monitor asks `{min(unknown)}`, which the property does not")
         self.possible = self._possible()
-        self._rows = [self._row(edge) for edge in judged.monitor.edges]
+        monitor = judged.monitor
+        row = rows(self.diagrams, monitor.decisions, lambda atom: self._truths[monitor.atoms[atom]])
+        self._rows = list(map(row, monitor.edges))
         self._told = {i: self.truths.holds(said(i)) for i in specification.inputs() if isinstance(i, New)}
         read = {atom.name for atom in atoms_within(judged.formula)} & conditions.keys()
         asked = {i for name in read for side in operands(conditions[name]) for i in inputs(side)}
@@ -83,14 +85,6 @@ class Letters:
             )
             for group in self._judged.specification.alphabet.groups
         )
-
-    def _row(self, target: Target) -> Diagram:
-        """Where the monitor goes on from a target, the values being its states."""
-        if target >= 0:
-            return self.diagrams.terminal(target)
-        atom, low, high = self._judged.monitor.decisions[~target]
-        holds = self._truths[self._judged.monitor.atoms[atom]]
-        return self.diagrams.choose(holds, self._row(high), self._row(low))
 
     def where(self, predicate: Formula) -> Diagram:
         """Where a state predicate holds."""

@@ -1,4 +1,4 @@
-"""What the conditions of a specification say, as typed expressions: what those of its machine are compared with.
+"""The meaning of a specification's conditions as typed expressions, to be compared with those of its machine.
 
 Written from the reference for values (`ltlc.specification.evaluation`), not from the lowering, and in no normal form:
 what is the same though it is written otherwise, `lowered.truths` says.

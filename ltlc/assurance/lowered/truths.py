@@ -44,7 +44,7 @@ P = Primitive
 
 
 class DiffersError(Exception):
-    """What a machine does is not what it should; the message says what."""
+    """A machine does something else than it should; the message says what."""
 
 
 class Truths:

@@ -97,7 +97,7 @@ def _of_module(file: PythonFile, machines: Sequence[Machine]) -> list[Written]:
 
 
 def told(read: Read) -> Read:
-    """What a step is told of an input by a caller: the latest value, from which it keeps older ones."""
+    """What a caller passes a step of an input: the latest value, from which it keeps older ones."""
     match read:
         case Held(signal, _, type_):
             return Held(signal, 0, type_)
@@ -224,7 +224,7 @@ def _of_node(
 
 
 def _of_property(file: PythonFile, node: ast.expr, machine: Machine, specification: PropertySpecification) -> Written:
-    """What the runtime is told of a property has to be what its machine says."""
+    """Raise NotUnderstoodError unless what the runtime gets for a property is as in its machine."""
     match node:
         case ast.Call(ast.Name("MonitoredProperty"), [], keywords):
             said = {each.arg or "": each.value for each in keywords}

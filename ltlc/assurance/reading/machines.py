@@ -395,7 +395,7 @@ class _Reading:
         return {atom: set(map(positive, atom.arguments)) for atom in compound}
 
     def _compared(self, tree: Tree, place: _Place) -> Literals | None:
-        """What a comparison says, unless it is one of states or times."""
+        """The condition of a comparison, unless it is one of states or times."""
         match tree:
             case Apply("<" | "<=" | ">" | ">=" | "==" | "!=" | "measured", (first, *_)) if first not in (
                 TIME,

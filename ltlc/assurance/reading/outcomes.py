@@ -17,7 +17,7 @@ class ReadBack:
 
 @dataclass(frozen=True, slots=True)
 class Difference:
-    """What a machine or a text does otherwise or, where that cannot be told, what in it is not understood.
+    """What a machine or a text does differently or, if that is unknown, what in it is not understood.
 
     `state` is that of the machine, None if it is about all of it; `letter` what holds there, None if it is so whatever
     holds; `by_time`: at a clock step.

@@ -1,4 +1,4 @@
-"""Plain trees: functions as two languages with the same statements say them, one printed from the other."""
+"""Plain trees: functions as two languages with the same statements have them, one printed from the other."""
 
 from __future__ import annotations
 

@@ -92,7 +92,7 @@ class PythonFile:
                 raise not_understood(made)
 
     def function(self, name: str) -> Method:
-        """The function called `name`, which is no method. Raises NotUnderstoodError."""
+        """The function called `name`, not a method. Raises NotUnderstoodError."""
         definition = self.names.only(name)
         if not isinstance(definition, ast.FunctionDef):
             raise NotUnderstoodError(f"`{name}` is not a function")

@@ -1,4 +1,4 @@
-"""Emitted Rust read back: it has to say what emitted C says, which is read as C.
+"""Emitted Rust read back: it must be equivalent to emitted C, which is read as C.
 
 All but the bodies of functions is compared token by token with what it has to be, lifetimes left out, which the
 compiler sees to; the bodies are compared as trees with those of C.
@@ -235,7 +235,7 @@ class _File:
     def _sampled(self, members: Sequence[Decl]) -> Iterator[tuple[str, str, bool]]:
         """Each value that may come, and each message, with its type, and whether it is a message.
 
-        A flag says that a value comes.
+        A flag marks that a value comes.
         """
         values = [each for each in members if each.bitsize is None and each.name != "nothing"]
         told = [each for each in members if each.bitsize is not None][len(values) :]

@@ -145,7 +145,23 @@ def _recipe(topic: Topic, types: MessageTypes) -> Recipe | str:
         return "it has messages of several types"
     if topic.type not in types.messages:
         return "the type is unknown; `--msg-path` adds the messages of a package or a bag"
-    return recipe_for(topic.type, types)
+    recipe = recipe_for(topic.type, types)
+    return recipe if not topic.fields else _only(recipe, topic, types)
+
+
+def _only(recipe: Recipe, topic: Topic, types: MessageTypes) -> Recipe | str:
+    """The recipe as far as the fields that a table has of `topic` go, or that they do not go far enough."""
+    every = dict(values_of(topic.type, types))
+    parts = {"vector": "xyz", "orientation": "xyzw"}
+    kept = {}
+    for suffix, (path, remark) in recipe.signals.items():
+        field = path.replace("[]", "").replace(".", "/")
+        needed = {f"{field}/{axis}".lstrip("/") for axis in parts.get(every.get(path, ""), "")} or {field}
+        if needed <= topic.fields:
+            kept[suffix] = path, remark
+    names = {*kept, "any"} if next(iter(recipe.signals)) in kept else {*kept}
+    rules = [rule for rule in recipe.rules if names.issuperset(re.findall(r"{(\w*)}", rule.text))]
+    return replace(recipe, signals=kept, rules=tuple(rules)) if kept else "none of its usual fields is a column"
 
 
 def _subject(topic: Topic, recipe: Recipe, types: MessageTypes, used: Names) -> Subject:

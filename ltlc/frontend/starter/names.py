@@ -20,7 +20,7 @@ _WORDS = frozenset(
     [*KEYWORDS, *CONTEXTUAL, *RESERVED, *FUNCTIONS, *QUANTIFIERS, *UNITS, *FOREIGN_WORDS, "opening"]
     + [word.lower() for word in FOREIGN_PREFIXES]
 )
-"""What a name had better not be."""
+"""Words that names avoid."""
 
 
 class Names:

@@ -22,12 +22,14 @@ class Topic:
     """A topic, and the full name of its type; of several types all names, with commas.
 
     If nothing can be said of it, `omitted` is the reason. A column of a table that is omitted has no type.
-    `comments` are those of a definition, by message and field.
+    In a table, only some `fields` of a message may be there; of none, all are. `comments` are those of a definition, by
+    message and field.
     """
 
     name: str
     type: str
     omitted: str = ""
+    fields: frozenset[str] = frozenset()
     comments: Mapping[tuple[str, str], str] = field(default_factory=dict, hash=False, compare=False)
 
     def __str__(self) -> str:
@@ -66,6 +68,11 @@ def recorded(path: Path) -> list[Topic]:
     recording = open_recording(path, {})
     assert isinstance(recording, BagRecording), path
     return [
-        Topic(absolute(name), of.type, SILENT if of.count == 0 else "", comments_in(of.type, of.form, of.definition))
+        Topic(
+            absolute(name),
+            of.type,
+            SILENT if of.count == 0 else "",
+            comments=comments_in(of.type, of.form, of.definition),
+        )
         for name, of in sorted(recording.topics.items())
     ]

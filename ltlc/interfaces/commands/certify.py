@@ -13,6 +13,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from ltlc.assurance import evidence
+from ltlc.assurance.afresh.files import Code, UnusableError, code_at, text_at
 from ltlc.assurance.certificates import Checked, Subject, Unreadable, check_certificates
 from ltlc.assurance.evidence.document import digest
 from ltlc.assurance.evidence.statement import State
@@ -25,7 +26,7 @@ from ltlc.interfaces.commands import arguments
 from ltlc.interfaces.commands.attesting import add_outputs, attest, refuse_unusable
 from ltlc.interfaces.commands.checked_evidence import check_evidence, documents_at
 from ltlc.interfaces.commands.common import FINDING, OK, UNDECIDED, failure, report, unusable
-from ltlc.interfaces.commands.emitted_code import Code, UnusableError, code_at, is_code_of
+from ltlc.interfaces.commands.emitted_code import is_code_of
 from ltlc.interfaces.commands.followed_programs import are_followed
 from ltlc.interfaces.commands.progress import progress, saying
 from ltlc.semantics.certificate_text import in_words
@@ -135,7 +136,7 @@ def _certify(options: argparse.Namespace, specification: Specification, encoding
 def _certificates(options: argparse.Namespace, specification: Specification, encoding: Encoding) -> str:
     """The text of the certificates that were given, or are made anew. Raises UnusableError and SpotMissing."""
     if options.certificate is not None:
-        return _read(options.certificate)
+        return text_at(options.certificate, "a certificate")
     if not options.evidence:
         raise UnusableError("give CERTIFICATE, or evidence with --evidence, for which certificates are made anew")
     from ltlc.assurance.evidence.certified import certificates
@@ -146,15 +147,6 @@ def _certificates(options: argparse.Namespace, specification: Specification, enc
         compiled, problems = compile_specification(specification, encoding, budget, watch)
         report(problems)
         return certificates(compiled, budget)[0]
-
-
-def _read(path: Path) -> str:
-    try:
-        return path.read_bytes().decode("utf-8")
-    except OSError as error:
-        raise UnusableError(f"{path} cannot be read: {error.strerror or error}") from None
-    except UnicodeDecodeError:
-        raise UnusableError(f"{path} is not a certificate: it is not UTF-8 text") from None
 
 
 def _answer(checked: Checked, counts: bool) -> str:

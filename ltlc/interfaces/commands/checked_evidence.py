@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
-from ltlc.assurance.afresh.files import UnusableError
+from ltlc.assurance.afresh.files import UnusableError, text_at
 from ltlc.assurance.evidence.checked import checked
 from ltlc.assurance.evidence.document import Claim, Document, NotCovered
 from ltlc.assurance.evidence.outcomes import Check, CheckedClaim
@@ -38,12 +38,7 @@ Not checked: that a property says what its requirement means, that the recording
 
 def documents_at(path: Path) -> tuple[Document, ...]:
     """The evidence in a file. Raises UnusableError."""
-    try:
-        found = parsed_all(path.read_bytes().decode("utf-8"))
-    except OSError as error:
-        raise UnusableError(f"{path} cannot be read: {error.strerror or error}") from None
-    except UnicodeDecodeError:
-        raise UnusableError(f"{path} is not evidence: it is not UTF-8 text") from None
+    found = parsed_all(text_at(path, "evidence"))
     if isinstance(found, UnreadableEvidence):
         raise UnusableError(f"{path}:{found.line}: {found.message}")
     return found

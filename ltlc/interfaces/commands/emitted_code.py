@@ -8,7 +8,7 @@ from functools import partial
 
 from ltlc import __version__
 from ltlc.assurance.afresh import packages
-from ltlc.assurance.afresh.files import Code, UnusableError, code_at, compared, emitted
+from ltlc.assurance.afresh.files import Code, compared, emitted
 from ltlc.assurance.afresh.outcomes import Equal, Unequal
 from ltlc.assurance.lowered.equality import compare
 from ltlc.assurance.lowered.letters import Judged
@@ -22,8 +22,6 @@ from ltlc.base.limits import Budget, Exceeded, run_all
 from ltlc.compiler import Compiled
 from ltlc.interfaces.commands.progress import progress, saying
 from ltlc.specification.specification import Specification
-
-__all__ = ["Code", "UnusableError", "code_at", "is_code_of"]
 
 READING = Budget(seconds=60.0, megabytes=1024)
 """What reading back the code of one property may use."""

@@ -43,7 +43,7 @@ def run(options: argparse.Namespace) -> int:
     if options.recording is None and sys.stdin.isatty():
         return unusable("give a recording, or the topics on standard input: `ros2 topic list -t | ltlc new`")
     try:
-        topics = _topics(options.recording)
+        topics = _topics(options.recording, options.msg_path)
     except MalformedLineError as error:
         return unusable(str(error))
     except UnicodeDecodeError as error:
@@ -72,11 +72,11 @@ def run(options: argparse.Namespace) -> int:
     return _write(text, options.output)
 
 
-def _topics(path: Path | None) -> Sequence[Topic]:
+def _topics(path: Path | None, message_paths: Sequence[str]) -> Sequence[Topic]:
     """Raises MalformedLineError, UnicodeDecodeError and RecordingError."""
     if path is None:
         return listed(sys.stdin.read())
-    return recorded(path) if is_bag(path) else tabled(path)
+    return recorded(path) if is_bag(path) else tabled(path, types_for(Source("ltlc new", ""), message_paths)[0])
 
 
 def _nothing(draft: Draft) -> str:

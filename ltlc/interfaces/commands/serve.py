@@ -67,9 +67,8 @@ def run(options: argparse.Namespace) -> int:
         server = Server(options.host, options.port, start)
     except OSError as error:
         return unusable(_unserved(options.host, options.port, error))
-    signal.signal(
-        signal.SIGTERM, signal.default_int_handler
-    )  # files that are dropped on the page are removed then, too
+    # Files that are dropped on the page are removed at the end, whichever signal that comes by.
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
     with server:
         try:
             if not is_local(options.host):

@@ -9,9 +9,8 @@ from ltlc.assurance.evidence.document import Claim, Document, NotCovered, Summed
 from ltlc.assurance.evidence.outcomes import Check, CheckedClaim
 from ltlc.assurance.evidence.statement import Result, State
 from ltlc.assurance.evidence.words import atoms_in_words, settings_in_words
-from ltlc.backends.templates import template
 from ltlc.base.provenance import FileDigest
-from ltlc.runtime.reports import printable
+from ltlc.monitoring.documents import document
 from ltlc.runtime.times import seconds_text
 from ltlc.semantics.verdicts import Verdict
 
@@ -48,14 +47,15 @@ def page(
         for number, (document, found) in enumerate(results)
     ]
     head = results[0][0].head
-    return template(__package__, "evidence.html.jinja", escape=True).render(
+    return document(
+        __package__,
+        "evidence.html.jinja",
         evidence=evidence,
         specification=head.specification,
         certificates=head.certificates,
         version=head.version,
         recordings=recordings,
         state=state.value,
-        shown=printable,
     )
 
 

@@ -13,7 +13,7 @@ from ltlc.program.properties import Words, words
 from ltlc.runtime.properties import Moment
 from ltlc.runtime.reports import printable
 from ltlc.runtime.times import Scale
-from ltlc.semantics.monitor import Monitor, Target
+from ltlc.semantics.monitor import Monitor, below
 from ltlc.semantics.trackers import trackers_of
 
 MOST_STATES = 20
@@ -104,12 +104,4 @@ def _cubes(monitor: Monitor, state: int) -> dict[int, list[Cube]]:
     try:
         return cubes(monitor, state)
     except TooManyCubesError:
-        return {target: [] for target in _targets(monitor, monitor.edges[state])}
-
-
-def _targets(monitor: Monitor, edge: Target) -> list[int]:
-    reached = [edge]
-    for target in reached:
-        if target < 0:
-            reached += [each for each in monitor.decisions[~target][1:] if each not in reached]
-    return [target for target in reached if target >= 0]
+        return {target: [] for target in below(monitor.decisions, [monitor.edges[state]]) if target >= 0}

@@ -26,7 +26,7 @@ from ltlc.monitoring.judging.violations import violation_text
 from ltlc.monitoring.later import all_violations
 from ltlc.runtime import reports
 from ltlc.runtime.properties import stated
-from ltlc.runtime.reports import printable
+from ltlc.runtime.reports import counted, printable
 from ltlc.runtime.session import Session
 from ltlc.runtime.times import seconds_text, span_text
 from ltlc.runtime.tracking import Track
@@ -125,7 +125,7 @@ class PageReport:
             version=__version__,
             is_framed=is_framed,
             title=f"{name} on {about}",
-            facts=", ".join([_count(len(self._compiled), "property", "properties"), _count(count, "recording")]),
+            facts=", ".join([counted(len(self._compiled), "property", "properties"), counted(count, "recording")]),
             labels=[printable(each.specification.label) for each in self._compiled],
             counts=[(verdict.value, counts[verdict.value]) for verdict in _WORST_FIRST if counts[verdict.value]],
             recordings=self._recordings,
@@ -218,26 +218,22 @@ def _facts(run: _Run) -> str:
         span += f"; +0 s is {seconds_text(scale.zero)} s"
     rate = "" if run.session.plan.rate is None else f", sampled {run.session.plan.rate:g} times a second"
     damage = "; it is damaged, and was judged up to there" if run.report.is_damaged else ""
-    return f"{span}, {_count(run.session.steps, 'step')}{rate}{damage}."
-
-
-def _count(number: int, noun: str, nouns: str = "") -> str:
-    return f"{number} {noun if number == 1 else nouns or noun + 's'}"
+    return f"{span}, {counted(run.session.steps, 'step')}{rate}{damage}."
 
 
 def _described(track: Track, trail: Trail, drawn: Sequence[Panel]) -> str:
     """The timeline in words, for those who cannot see it."""
     shown = ", ".join(printable(panel.title) for panel in drawn)
-    parts = [f"Timeline of {printable(track.property.label)}: {_count(len(trail.changes), 'change')} of verdict"]
+    parts = [f"Timeline of {printable(track.property.label)}: {counted(len(trail.changes), 'change')} of verdict"]
     if track.property.scopes:
-        parts.append(_count(len(trail.spans), "episode"))
+        parts.append(counted(len(trail.spans), "episode"))
     return f"{', '.join(parts)}, over {shown}. The changes are listed below."
 
 
 def machine_described(compiled: Compiled, trail: Trail) -> str:
     """The picture of a monitor in words, for those who cannot see it."""
-    states = _count(len(compiled.machine.states), "state")
-    edges = _count(len(trail.edges), "edge")
+    states = counted(len(compiled.machine.states), "state")
+    edges = counted(len(trail.edges), "edge")
     return f"The monitor has {states}; this run took {edges} and ended in state {trail.state}."
 
 

@@ -301,8 +301,16 @@ function paste(csv) {
   }
 }
 
-// Take the run from a recording, which is sent to the server in base64, and kept nowhere.
+// CSV with a column `time` is taken as if it was pasted, its times as they are.
 async function openFile(file) {
+  const text = /\.csv$/i.test(file.name) ? await file.text() : "";
+  if (text.split("\n", 1)[0].split(",").some((cell) => cell.trim() === "time")) paste(text);
+  else if (RECORDING.test(file.name)) openRecording(file);
+  else failed(new Error(`${file.name} is not a recording: open a .mcap, .db3, .bag, .csv, .jsonl or .parquet`));
+}
+
+// Take the run from a recording, which is sent to the server in base64, and kept nowhere.
+async function openRecording(file) {
   if (file.size > start.most) {
     return failed(new Error(`${file.name} is larger than ${start.most / 1e6} MB: use ltlc run`));
   }
@@ -392,9 +400,13 @@ function listen() {
     const [file] = event.dataTransfer.files;
     if (!file) return;
     event.preventDefault();
-    if (/\.csv$/i.test(file.name)) file.text().then(paste);
-    else if (RECORDING.test(file.name)) openFile(file);
-    else failed(new Error(`${file.name} is not a recording: drop a .mcap, .db3, .bag, .csv, .jsonl or .parquet`));
+    openFile(file);
+  });
+  $("open").addEventListener("click", () => $("file").click());
+  $("file").addEventListener("change", () => {
+    const [file] = $("file").files;
+    if (file) openFile(file);
+    $("file").value = ""; // the same file may be opened again
   });
   for (const [name, act] of [["explain", explain], ["compare", compare]]) {
     $(name).addEventListener("toggle", () => { if ($(name).open) act(); });

@@ -9,7 +9,7 @@ from ltlc.base.provenance import pairs
 from ltlc.base.render.table import aligned
 from ltlc.monitoring.campaigns.outcomes import Outcome, PropertyOutcome
 from ltlc.monitoring.campaigns.places import Found
-from ltlc.monitoring.campaigns.tally import Result, Tally, brief, counted
+from ltlc.monitoring.campaigns.tally import Result, Tally, brief
 from ltlc.monitoring.judging.run import unread_case, warnings
 from ltlc.runtime import junit, reports
 from ltlc.semantics.durations import Nanoseconds
@@ -52,9 +52,9 @@ def remarks(found: Found) -> list[str]:
     told = []
     if found.left_alone:
         kind = "a recording" if found.left_alone == 1 else "recordings"
-        told.append(f"{counted(found.left_alone, 'file')} skipped: not {kind}")
+        told.append(f"{reports.counted(found.left_alone, 'file')} skipped: not {kind}")
     if found.doubled:
-        told.append(f"{counted(len(found.doubled), 'recording')} given twice, judged once")
+        told.append(f"{reports.counted(len(found.doubled), 'recording')} given twice, judged once")
     return told
 
 

@@ -1,4 +1,4 @@
-"""The summary of a campaign as one page of HTML: nothing is loaded with it, and names stay text."""
+"""The summary of a campaign as one page of HTML."""
 
 from __future__ import annotations
 
@@ -8,13 +8,12 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 
-import jinja2
-
 from ltlc import __version__
 from ltlc.monitoring.campaigns.forms import remarks
 from ltlc.monitoring.campaigns.places import Found, is_address
 from ltlc.monitoring.campaigns.tally import Failing, PropertyTally, Result, Tally
-from ltlc.runtime.reports import printable, value_text
+from ltlc.monitoring.documents import document
+from ltlc.runtime.reports import value_text
 from ltlc.runtime.times import SECOND, Scale, seconds_text, span_text
 
 SIDE_BY_SIDE = 4
@@ -30,17 +29,11 @@ def summary_page(specification: str, tally: Tally, found: Found, english: Mappin
     `english` says in words what each property means, by its label. The page links to recordings of this machine, as
     seen from the `folder` that it is written to.
     """
-    environment = jinja2.Environment(
-        loader=jinja2.PackageLoader("ltlc.monitoring.campaigns", "."),
-        autoescape=True,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        undefined=jinja2.StrictUndefined,
-    )
-    environment.filters["shown"] = printable
-    environment.filters["link"] = lambda name: _link(name, folder)
     properties = list(tally.properties.values())
-    return environment.get_template("page.html").render(
+    return document(
+        __package__,
+        "page.html.jinja",
+        link=lambda name: _link(name, folder),
         specification=specification,
         version=__version__,
         summary="; ".join([tally.sentence(), *remarks(found)]),

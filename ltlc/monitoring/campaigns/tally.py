@@ -132,12 +132,7 @@ class Tally:
             "tried again": self.again,
         }
         parts = [f"{count} {what}" for what, count in told.items() if count]
-        return f"{counted(self.recordings, 'recording')}: {', '.join(parts) or 'nothing was judged'}"
-
-
-def counted(number: int, noun: str) -> str:
-    """`3 recordings`, `1 recording`."""
-    return f"{number} {noun}{'' if number == 1 else 's'}"
+        return f"{reports.counted(self.recordings, 'recording')}: {', '.join(parts) or 'nothing was judged'}"
 
 
 def brief(outcome: Outcome) -> str:

@@ -67,17 +67,17 @@ class Elements:
 
     @cached_property
     def early(self) -> int:
-        """How many at first are no steps: something that is shared has no value yet."""
+        """How many at first are not steps, as something shared has no value yet."""
         return int(self.rows.searchsorted(self.shared.first))
 
     @cached_property
     def invalid(self) -> Mask | None:
-        """Which are no steps because something is NaN; None if none is."""
+        """Which are not steps because something is NaN; None if all are steps."""
         return None if self.own.invalid is None else self.own.invalid.take(self.lasts)
 
     @cached_property
     def steps(self) -> Runs:
-        """The runs without those that are no steps."""
+        """The runs without rows that are not steps."""
         if self.invalid is not None:
             return runs_of(self.numbers, np.flatnonzero(~self.invalid))
         return runs_of(self.numbers, np.arange(self.early, len(self))) if self.early else self.runs

@@ -42,7 +42,7 @@ class KeptLetters:
         self._for, self._until = "", 0
 
     def after(self, step: int) -> int:
-        """The first step after this one that is none, or whose letter is another; how many there are, if none is."""
+        """The first step after this one that is invalid, or has another letter; otherwise the number of steps."""
         taken = self._taken()
         if taken == (None,) * len(taken):
             return _next(self._latest, step, self._count)

@@ -1,6 +1,6 @@
 """A property as one table: its monitor and which of its scopes are open, by letters as numbers.
 
-Of a property with clocks, the table says what comes of a step as long as no clock comes due, and when clocks are set.
+Of a property with clocks, the table has the results of steps as long as no clock comes due, and when clocks are set.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from ltlc.semantics.monitor import Decision, Target
 from ltlc.semantics.verdicts import Verdict
 
 Letters = NDArray[np.int64]
-"""A number for each letter, by the number of the letter: bit i says whether atom i holds."""
+"""A number for each letter, by the number of the letter: bit i is whether atom i holds."""
 
 MOST_ATOMS = 8
 MOST_STATES = 64

@@ -67,7 +67,7 @@ def messages_of(
 
 
 def letters_of(of: Prepared, steps: Steps, atoms: Collection[int]) -> Bytes:
-    """The letter of each of `steps`, as far as it is of `atoms`: bit i says whether atom i holds."""
+    """The letter of each of `steps`, restricted to `atoms`: bit i is whether atom i holds."""
     names = {of.atoms[number].name for number in atoms}
     prepare((each for each in of.compare if each[0] in names), steps)
     letters = np.zeros(len(steps), np.uint8)

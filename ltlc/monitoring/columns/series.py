@@ -19,7 +19,7 @@ from ltlc.specification.wire import EXACT
 
 
 class UnsupportedError(Exception):
-    """What columns cannot do, so that rows have to: the message says what."""
+    """Columns do not support something, so rows are used; the message says what."""
 
 
 Rows = Places | None

@@ -18,7 +18,7 @@ PIECE = 1 << 16
 """How many values of a column are looked at at a time: their least and greatest tell most comparisons."""
 
 PIECES = 8
-"""Of so many pieces at a time, a sample tells whether they may be looked at together."""
+"""A sample of so many pieces at a time shows whether they may be looked at together."""
 
 APART = 4091
 """How far the values of a sample are from one another: each costs a look into memory."""

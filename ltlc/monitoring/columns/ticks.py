@@ -21,7 +21,7 @@ def times_of(ticks: Ticks, before: int) -> Places:
     numbers = np.arange(ticks.count, ticks.count + ticks.before(before), dtype=np.int64)
     whole, part = divmod(ticks.period.numerator, ticks.period.denominator)
     largest = max(whole, part) * (int(numbers[-1]) + 1 if len(numbers) else 1)
-    # Number by number where something is no integer of 64 bits.
+    # Number by number if something does not fit into 64 bits.
     if max(largest, ticks.period.denominator) >= 1 << 62:
         return np.array([ticks.at(number) for number in numbers.tolist()], np.int64)
     return ticks.start + numbers * whole + numbers * part // ticks.period.denominator

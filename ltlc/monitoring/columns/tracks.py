@@ -141,7 +141,7 @@ class Forward:
     tables: Tables
 
     def finish(self, passed: Passed, found: Stretch) -> None:
-        """Take the steps of `found`, with what the tables say of them, and by itself the one that decides."""
+        """Take the steps of `found` with their table entries, and the one that decides by itself."""
         track, steps, base = self.track, found.steps, self.track.steps
         self.restore(passed, found)
         if passed.steps < len(found):

@@ -39,7 +39,7 @@ def wanted_of(read: p.Held | p.Recent | p.Slope | p.News) -> sampling.Wanted:
 
 
 def value(expression: p.Expression, steps: Steps) -> Column:
-    """`expression`, which is no array, at `steps`. Raises UnsupportedError."""
+    """The single value `expression` at `steps`. Raises UnsupportedError."""
     with np.errstate(all="ignore"):
         return _value(expression, steps)
 
@@ -120,7 +120,7 @@ def arrays_at(array: p.Expression, steps: Steps) -> ByStep:
 
 
 def _counted(count: p.Count, steps: Steps) -> Array:
-    """What `count` says of elements of arrays, computed once where all that it reads stays the same."""
+    """The value of `count`, computed once where everything that it reads stays the same."""
     arrays = [arrays_at(array, steps) for array in count.arrays]
     columns = {single: np.asarray(_value(single, steps)) for single in dict.fromkeys(_singles(count.guard))}
     if len(arrays) == 1 and not columns:

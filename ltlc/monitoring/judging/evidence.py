@@ -1,4 +1,4 @@
-"""Evidence of a recording: what is said of all recordings is prepared once, and the rest as each of them is judged."""
+"""Evidence of a recording: the part common to all recordings is prepared once, the rest as each is judged."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ class Kept(NamedTuple):
 
 @dataclass(frozen=True)
 class Evidence:
-    """What is said of every recording that is judged by `properties`: by their labels, their atoms or why not.
+    """The part common to all recordings that `properties` judge: by their labels, their atoms or why not.
 
     `signals` are what the columns of a table may be, or why that cannot be said.
     `version` is that of ltlc. `specification` is the name of the file and its digest, `certificates` a digest.
@@ -108,7 +108,7 @@ class Evidence:
 
 
 def evidence_by(compiled: Sequence[Compiled], specification: Specification, budget: Budget) -> Evidence:
-    """What evidence says of every recording; the certificate of each property may take that `budget`."""
+    """The part of evidence common to all recordings; the certificate of each property may take that `budget`."""
     from ltlc.assurance.evidence.certified import certificates  # which imports what makes certificates
 
     text, reasons = certificates(compiled, budget)

@@ -268,7 +268,7 @@ class Judge:
         return WholeRuns(compiled, self.specification, self._given(columns), self.evidence.kept)
 
     def _made_of(self, path: Path) -> dict[str, Any]:
-        """What a report says of what it was made of; what is opened in another way is in no file."""
+        """The provenance of a report; recordings that were opened in another way are not in files."""
         file = path if self.hashed and self.open is open_recording else None
         is_part = (self.reading.since, self.reading.until) != (None, None)
         return {"specification": self.specification.source, "file": file, "is_part": is_part}

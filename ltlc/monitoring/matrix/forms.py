@@ -8,9 +8,9 @@ from typing import Any
 
 from ltlc.base.provenance import provenance
 from ltlc.base.render.table import aligned
-from ltlc.monitoring.campaigns.tally import Result, counted
+from ltlc.monitoring.campaigns.tally import Result
 from ltlc.monitoring.matrix.matrix import Covered, Judged, Matrix, State, Traced
-from ltlc.runtime.reports import printable
+from ltlc.runtime.reports import counted, printable
 
 
 def text(matrix: Matrix) -> str:
@@ -47,7 +47,7 @@ def results_text(of: Traced) -> str:
 
 
 def gaps(matrix: Matrix) -> dict[str, list[str]]:
-    """What is not covered, under titles, in sentences; without results nothing is said of these."""
+    """What is not covered, under titles, in sentences; without results these are omitted."""
     told = {
         "Requirements without a property": [_named(each) for each in matrix.uncovered],
         "Requirements that the list does not have": [_named(each) for each in matrix.unlisted],
@@ -80,7 +80,7 @@ def summary(matrix: Matrix) -> str:
     words = {State.HOLDS: "that hold", State.NO_PROPERTY: "without a property"}
     parts = [f"{states.count(state)} {words.get(state, state.value)}" for state in shown if state in states]
     told = f": {', '.join(parts)}" if parts else ""
-    properties = counted(len(matrix.properties), "property").replace("propertys", "properties")
+    properties = counted(len(matrix.properties), "property", "properties")
     return f"{counted(len(states), 'requirement')}{told}; {properties}"
 
 

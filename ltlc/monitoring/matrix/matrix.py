@@ -22,7 +22,7 @@ class State(Enum):
     NO_PROPERTY = "no property"
     NOT_RUN = "not run"
     OPEN = "open"
-    """Something is still owed, or never began, or a recording was not judged whole."""
+    """An obligation is open, or a property never began, or a recording was not judged whole."""
     IDLE = "never triggered"
     HOLDS = "holds"
 
@@ -171,7 +171,7 @@ class Matrix:
 
     @property
     def not_run(self) -> list[Traced]:
-        """The properties of which no recording says anything as they are now."""
+        """The properties that no recording tests as they are now."""
         return [each for each in self.properties if not each.fresh]
 
     @property

@@ -21,7 +21,7 @@ from ltlc.semantics.verdicts import Verdict
 
 
 class Result(Enum):
-    """What there is to say of a value that was sought."""
+    """The result for a value that was sought."""
 
     FOUND = "found"
     NONE = "no value passes"
@@ -40,7 +40,7 @@ class Failure:
 
 @dataclass
 class Finding:
-    """What the recordings so far say of what is `sought`: all values from `number` on pass.
+    """What the recordings so far show of what is `sought`: all values from `number` on pass.
 
     `failure` is the recording that decides, with the next tighter value; where no value passes, with the weakest.
     `not_started` has the remarks of `ltlc run` on what did not, all of it or a part of what a `forall` stands for.
@@ -74,7 +74,7 @@ class Finding:
 
 @dataclass(frozen=True)
 class Mined:
-    """What the recordings say of all that was sought.
+    """The results for all that was sought.
 
     `unusable` are those that cannot be read to their end, which say nothing. How often one was looked through is in
     `looks`.
@@ -131,7 +131,7 @@ def mine(
 
 
 def _ask(oracle: Oracle, recording: Kept, findings: Sequence[Finding], each: bool) -> list[Diagnostic]:
-    """Add to `findings` what `recording` says, and return nothing; or else its errors."""
+    """Add the findings of `recording` to `findings`, and return nothing; otherwise its errors."""
     searches = [(f, Search(0 if each else f.number, f.sought.values.last)) for f in findings if f.passes or each]
     while asked := [(finding, search) for finding, search in searches if not search.is_done]:
         trials = [Trial(finding.sought, number) for finding, search in asked for number in search.numbers()]
@@ -148,7 +148,7 @@ def _ask(oracle: Oracle, recording: Kept, findings: Sequence[Finding], each: boo
 
 
 def _learn(finding: Finding, search: Search, recording: Kept, answers: Mapping[int, Answer]) -> bool:
-    """Take in what a recording says to some values; whether it says anything."""
+    """Take a recording's results for some values; whether it has any."""
     outcomes = {number: answer.outcome for number, answer in answers.items()}
     answer = next(iter(answers.values()))
     waiting = [track for track in answer.tracks if track.verdict is Verdict.NOT_STARTED]

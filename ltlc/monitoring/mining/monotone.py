@@ -38,7 +38,7 @@ class NotMonotoneError(Exception):
 
 
 class Monotony:
-    """How a property depends on its parameter, told by `smaller` and `larger`, which have different values there.
+    """How a property depends on its parameter, from `smaller` and `larger`, which have different values there.
 
     `direction` is WEAKER or STRONGER; `numbers` are those among which is what is compared with the parameter, None if
     that is a margin or a duration. Raises NotMonotoneError.

@@ -1,4 +1,4 @@
-"""What a recording says to values: the properties with these are judged by their monitors, as `ltlc run` does."""
+"""The verdicts of a recording on values: the properties with these are judged by their monitors, as in `ltlc run`."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ MOST_KEPT = 256 * 2**20
 
 
 class Outcome(Enum):
-    """What a recording says to a value: of several properties that have it, each has to pass."""
+    """A recording's verdict on a value: all properties that have it must pass."""
 
     PASSES = "passes"
     """At its end the property holds: it is not violated, and no obligation is open."""
@@ -47,7 +47,7 @@ class Answer:
 
     @property
     def outcome(self) -> Outcome:
-        """What that says to the value; a property that has not started says nothing."""
+        """What that means for the value; nothing if the property has not started."""
         verdicts = {track.verdict for track in self.tracks} - {Verdict.NOT_STARTED}
         if not verdicts:
             return Outcome.NOT_STARTED
@@ -89,7 +89,7 @@ class Oracle:
     def answers(
         self, recording: Kept, trials: Sequence[Trial], finds_all: bool = False
     ) -> tuple[RunReport, dict[Trial, Answer]]:
-        """What `recording` says to each of `trials`; nothing if none of it can be read.
+        """The verdict of `recording` on each of `trials`; nothing if none of it can be read.
 
         If it `finds_all` violations, those after the first one are known, too.
 

@@ -1,4 +1,4 @@
-"""A specification with `?` in it: what it says with values there, and which values there can be."""
+"""A specification with `?` in it: its properties with values there, and which values are possible."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ class Template:
     sought: tuple[Sought, ...]
 
     def specification(self, trials: Iterable[Trial]) -> Specification:
-        """What it says with the values of `trials`; with some value of what none of them is about.
+        """The specification with the values of `trials`, and some value for the other parameters.
 
         All properties are there, for a run, its ticks and its timeout begin with the first of them.
         """

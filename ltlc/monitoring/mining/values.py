@@ -2,7 +2,7 @@
 
 They are numbered: the finite numbers of the field's own type, one after the other without any between, or durations in
 whole nanoseconds. Number 0 makes the strongest property, `last` the weakest. Integers go one further than the type on
-either side, so that a threshold which nothing is compared with is told from one that the smallest integer decides.
+either side, so that a threshold which nothing is compared with is not taken for one that the smallest integer decides.
 """
 
 from __future__ import annotations

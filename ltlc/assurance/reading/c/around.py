@@ -187,7 +187,7 @@ class Around:
         return list(dict.fromkeys(age.signal for age in struct.ages.values()))
 
     def heard(self, struct: Struct) -> str:
-        """How a property is told of messages from which its ages count."""
+        """How a property learns of messages from which its ages count."""
         signals = {i.signal.name: i.signal for i in struct.inputs if isinstance(i, New)}
         told = [some(self.given.news(topics_of(signals[name]))) for name in self.aged(struct)]
         return f"{struct.name}_hear({', '.join([f'&monitors->{struct.name}', 'time', *told])});"

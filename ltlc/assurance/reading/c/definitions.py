@@ -166,7 +166,7 @@ class Definitions:
             raise NotUnderstoodError(f"`{shown(place.found)}` in `{name}` is not `{shown(place.right)}`")
 
     def require_types(self, right: Mapping[str, str]) -> None:
-        """Raise NotUnderstoodError unless these types, by their names, are what is said of them."""
+        """Raise NotUnderstoodError unless these types, by their names, are as expected."""
         for name, node in zip(right, self._parsed(" ".join(right.values())), strict=True):
             self._require_type(name, node.type.type)
 
@@ -242,7 +242,7 @@ def type_text(declared: Node) -> str:
 
 
 def statements(function: FuncDef) -> list[Node]:
-    """What a function does, without what only says that a name is not used."""
+    """The body of a function, without statements that only mark a name as unused."""
     items = function.body.block_items or []
     return [node for node in items if not (isinstance(node, Cast) and isinstance(node.expr, ID))]
 

@@ -275,7 +275,7 @@ class WrittenInC:
                 raise not_understood(call)
 
     def _at_first(self, place: str) -> str:
-        """What is handed on with the session in place of what is with a message: there is no news."""
+        """The arguments at the session's beginning, in place of those of a message: there is no news."""
         news = self.definitions.places([self.pace.place(each) for each in self.struct.inputs if isinstance(each, New)])
         return "false" if place in news else place.replace("signals->", f"monitors->{self.pace.name}.")
 

@@ -95,7 +95,7 @@ def _occurred(node: c_ast.FuncCall, full: Block) -> Block:
 
 
 def _settled(found: Statement) -> Statement:
-    """The verdict is set, whether or not it was that already: only then it is said to have come now."""
+    """The assignment of a verdict, which is behind a test for a change if its time is kept."""
     match found:
         case If(Apply("!=", (Attribute("verdict"), before)), (Assign(Attribute("verdict"), verdict) as set_,), ()):
             return set_ if before == verdict else found

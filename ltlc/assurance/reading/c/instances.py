@@ -53,7 +53,7 @@ class OpenTable:
             yield text % words
 
     def _apart(self) -> Iterator[tuple[str, str, list[str]]]:
-        """What tells instances apart: the declarations and names of members, and what is compared of them."""
+        """What distinguishes instances: the declarations and names of members, and what of them is compared."""
         yield from (("int64_t ", due, [""]) for due in self.struct.dues)
         yield f"uint{self.struct.width}_t ", "state", [""]
         registers = self.struct.of.machine.registers

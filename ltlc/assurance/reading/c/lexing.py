@@ -27,7 +27,7 @@ _SPLICE = re.compile(r"\\[ \t\v\f\r]*(?:\n|\Z)|\?\?")
 
 @dataclass(frozen=True, slots=True)
 class Token:
-    """A token and its line; `directive`: it is said to the preprocessor, the end of the line included."""
+    """A token and its line; a `directive` is for the preprocessor, the end of the line included."""
 
     text: str
     line: int

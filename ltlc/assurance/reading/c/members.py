@@ -39,7 +39,7 @@ class Property(Protocol):
 
     @property
     def formula(self) -> Formula:
-        """What it says."""
+        """It in core LTL."""
         ...
 
     @property
@@ -104,7 +104,7 @@ class Struct:
 
     @property
     def waited(self) -> list[Input]:
-        """The inputs without a value of which there is no step."""
+        """The inputs that a step needs a value of."""
         return [each for each in self.inputs if read(each) in self.of.machine.waits_for]
 
     @property

@@ -1,4 +1,4 @@
-"""C as trees of pycparser, without what says nothing: how they are made of text, and where two of them differ.
+"""C as trees of pycparser, without empty parts: how they are made of text, and where two of them differ.
 
 What is said to the preprocessor is put aside, line by line, with all that stands where it may not be read.
 """
@@ -37,7 +37,7 @@ class Directive(NamedTuple):
 
 @dataclass(frozen=True)
 class Text:
-    """A header or a source file: what it says to the preprocessor, and its declarations and definitions."""
+    """A header or a source file: its directives, and its declarations and definitions."""
 
     directives: Sequence[Directive]
     nodes: Sequence[Node]
@@ -85,7 +85,7 @@ def _directive(group: Sequence[Token]) -> Directive:
 
 
 def _directives(found: Sequence[Token]) -> Iterator[list[Token]]:
-    """What is said to the preprocessor: each line, or all lines from an `#if` to its `#endif`."""
+    """The directives: each line, or all lines from an `#if` to its `#endif`."""
     group: list[Token] = []
     line: list[str] = []
     for token in found:
