@@ -13,8 +13,9 @@ from quick_gate import quick_gate
 
 from ltlc import cli
 from ltlc.assurance.evidence.certified import certificates
-from ltlc.assurance.evidence.document import END, Claim, NotCovered, Summed, UnreadableEvidence, parsed
-from ltlc.assurance.evidence.judge import refusal
+from ltlc.assurance.evidence.claims import refusal
+from ltlc.assurance.evidence.document import END, Claim, NotCovered, Summed
+from ltlc.assurance.evidence.parsing import UnreadableEvidence, parsed
 from ltlc.base.limits import Budget
 from ltlc.frontend.language import read_source
 from ltlc.interfaces.api.prepare import prepare
