@@ -795,8 +795,8 @@ class Values:
             case {"message": topics}:
                 return Series(self.heard(topics, now=True), fresh=self.heard(topics))
             case {"opening": of, "scope": number}:
-                now = np.broadcast_to(value(of).now, self.count)[self.taken[number]]
-                return Series(now, value(of).known, value(of).fresh)
+                everywhere = np.broadcast_to(value(of).now, self.count)
+                return Series(everywhere[self.taken[number]], value(of).known, value(of).fresh)
             case {"instead": constant, "of": of}:
                 first = [self.heard([topic]) for topic in x.get("news", [])]
                 is_late = reduce(np.logical_and, first) & ~value(of).known if first else NO
