@@ -99,6 +99,7 @@ class Tracker:
     _known: dict[tuple[State, Scope, Letter, int], tuple[Case, Letter]] = field(
         default_factory=dict, init=False, repr=False, compare=False
     )
+    """What `step` has found: runs ask the same again and again."""
 
     @property
     def initial(self) -> State:
