@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import csv
 import io
+import json
 import shutil
-from collections.abc import Iterator, Sequence
-from contextlib import redirect_stdout
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import redirect_stderr, redirect_stdout
 from functools import cache
 from pathlib import Path
 from random import Random
 from typing import Any
 
 import numpy as np
+import pyarrow as pa
+from pyarrow import parquet
 from rosbags.rosbag2 import StoragePlugin, Writer  # noqa: TID251
 from rosbags.typesys import Stores, get_typestore  # noqa: TID251
 
@@ -23,6 +27,7 @@ from ltlc.inputs.recordings.reading import DEFAULT, ReadOptions
 from ltlc.interfaces.api.prepare import prepare
 from ltlc.monitoring.judging.evidence import evidence_by
 from ltlc.monitoring.judging.run import Judge
+from ltlc.runtime.times import seconds_text
 from ltlc.semantics.encodings import EPISODE
 
 HEAD = """
@@ -224,6 +229,46 @@ def write_bag(path: Path, rows: Sequence[tuple[int, str, Any]], storage: Storage
     return path
 
 
+CELLS: dict[str, Callable[[Any], dict[str, Any]]] = {
+    "/x": lambda message: {"x": message.data},
+    "/y": lambda message: {"/y/data": message.data},
+    "/b": lambda message: {"b": message.data},
+    "/m": lambda message: {"m": message.data},
+    "/i": lambda message: {"i": message.data},
+    "/z": lambda message: {"z": True},
+    "/scan": lambda message: {f"scan[{number}]": float(each) for number, each in enumerate(message.ranges)},
+    "/j": lambda message: {"/j/position": message.position.tolist(), "vel": message.velocity.tolist()},
+    "/tf": lambda message: (
+        {"base.position.x": message.transforms[0].transform.translation.x} if message.transforms else {}
+    ),
+    "/q": lambda message: {"thing.velocity": abs(message.pose.position.y)},
+}
+"""What a table has in place of messages on a topic: columns by name, by topic, by element, and of what is computed."""
+
+
+def write_table(path: Path, rows: Sequence[tuple[int, str, Any]]) -> Path:
+    """The same messages in a table, by the end of its name."""
+    table = [(time, CELLS[topic](message)) for time, topic, message in rows if topic in CELLS]
+    heads = list(dict.fromkeys(head for _, cells in table for head in cells))
+    match path.suffix:
+        case ".parquet":
+            columns = {head: [cells.get(head) for _, cells in table] for head in heads}
+            parquet.write_table(pa.table({"time": [time for time, _ in table], **columns}), path)
+        case ".jsonl":
+            lines = [
+                f'{{"time": {seconds_text(time)}, {json.dumps(cells)[1:]}'.replace(", }", "}") for time, cells in table
+            ]
+            path.write_text("".join(f"{line}\n" for line in lines), encoding="utf-8")
+        case _:
+            with path.open("w", encoding="utf-8", newline="") as file:
+                writer = csv.writer(file)
+                writer.writerow(["__time", *heads])
+                for time, cells in table:
+                    texts = [json.dumps(cell) if isinstance(cell, list) else cell for cell in map(cells.get, heads)]
+                    writer.writerow([seconds_text(time), *texts])
+    return path
+
+
 def random_rows(chance: Random) -> list[tuple[int, str, Any]]:
     """Messages on most topics, some at the same time, some after a second of silence."""
     topics, messages = chance.sample(list(TYPES), chance.choice([len(TYPES) - 2, len(TYPES)])), Messages(chance)
@@ -255,7 +300,8 @@ def said_of(document: Document | str, *paths: Path) -> tuple[int, list[str]]:
     text = document if isinstance(document, str) else printed(document)
     file = paths[0].parent / "evidence.txt"
     file.write_text(text, encoding="utf-8")
-    with redirect_stdout(io.StringIO()) as output:
+    output = io.StringIO()
+    with redirect_stdout(output), redirect_stderr(output):
         code = recorded.main([str(file), *map(str, paths)])
     return code, output.getvalue().splitlines()
 
@@ -266,13 +312,17 @@ def specification(properties: Sequence[str], settings: str = "") -> str:
 
 
 def disagreements(seed: int, folder: Path) -> Iterator[str]:
-    """What `recorded.py` does not find as ltlc has it, of all properties on a random bag, with a rate or without."""
+    """What `recorded.py` does not find as ltlc has it, of all properties on a random bag, with a rate or without.
+
+    The same messages are in a table, too, as far as tables have them.
+    """
     chance = Random(seed)
-    settings = chance.choice(["", "", "_rate_ = 5\n", "_rate_ = 3\n"])
-    storage = chance.choice([StoragePlugin.MCAP, StoragePlugin.SQLITE3])
-    bag = write_bag(folder / "bag", random_rows(chance), storage)
-    document = evidence_of(specification(PROPERTIES, settings), bag)
-    code, lines = said_of(document, bag)
-    yield from (line for line in lines if "the letters are as stated" not in line and "nothing is claimed" not in line)
-    if code:
-        yield f"exit code {code}"
+    text = specification(PROPERTIES, chance.choice(["", "", "_rate_ = 5\n", "_rate_ = 3\n"]))
+    rows, storage = random_rows(chance), chance.choice([StoragePlugin.MCAP, StoragePlugin.SQLITE3])
+    ending = chance.choice([".csv", ".jsonl", ".parquet"])
+    for recording in (write_bag(folder / "bag", rows, storage), write_table(folder / f"table{ending}", rows)):
+        code, lines = said_of(evidence_of(text, recording), recording)
+        fine = ("the letters are as stated", "nothing is claimed")
+        yield from (f"{recording.name}: {line}" for line in lines if not any(each in line for each in fine))
+        if code:
+            yield f"{recording.name}: exit code {code}"

@@ -161,15 +161,15 @@ class Letters:
         words, before = self._words, self._written
         for now in {*letters} - words.keys():
             words[now] = "".join(f" a{number}" for number in _numbers(now)) + "\n"
-        gaps = np.diff(times).tolist()
-        first = f"at {times[0]}" if before is None else f"+{times[0] - before}"
-        lines = [first, *[f"+{gap}" for gap in gaps]]
-        text = "".join([line + words[now] for line, now in zip(lines, letters, strict=True)])
-        if self._length <= MOST_BYTES:
-            self._lines += [Line(time, _numbers(now)) for time, now in zip(times[:MOST_BYTES], letters, strict=False)]
+        gaps = np.diff(times, prepend=times[0] if before is None else before).tolist()
+        text = "".join([f"+{gap}{words[now]}" for gap, now in zip(gaps, letters, strict=True)])
+        if before is None:
+            text = f"at {times[0]}{text[2:]}"
         self._written = times[-1]
         self._count += len(times)
         self._length += len(text)
+        if self._length <= MOST_BYTES:
+            self._lines += [Line(time, _numbers(now)) for time, now in zip(times, letters, strict=True)]
         self._sha256.update(text.encode())
 
     @property

@@ -10,7 +10,8 @@ import math
 from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple, assert_never
 
-from ltlc.assurance.evidence.document import StatedAtom
+from ltlc.assurance.evidence.document import StatedAtom, StatedSignal
+from ltlc.inputs.recordings.lacks import signals_of
 from ltlc.program.excused import excused
 from ltlc.program.machine import Instead
 from ltlc.semantics import ltl
@@ -19,7 +20,7 @@ from ltlc.semantics.properties import predicates
 from ltlc.semantics.timed_atoms import Age, Late, News, Previously, atoms_within, duration_of, timed_atoms
 from ltlc.specification import expressions as e
 from ltlc.specification.specification import PropertySpecification, topics_of
-from ltlc.specification.wire import double_or_integer
+from ltlc.specification.wire import PRIMITIVES, double_or_integer
 
 Json = object
 """What JSON can say."""
@@ -61,6 +62,22 @@ def stated_atoms(of: PropertySpecification, encoding: Encoding = EPISODE) -> tup
         StatedAtom(a.name, _message(a.condition) if a.name in messages else writer.condition(a.condition))
         for a in of.atoms
     )
+
+
+def stated_signals(properties: Iterable[PropertySpecification]) -> tuple[StatedSignal, ...]:
+    """What a column of a table may be: fields, and what the author has named. Raises NotCoveredError."""
+    writer = _Writer({})
+    read = signals_of(properties).values()
+    found = (each for each in read if not (each.is_taken or each.is_constant or " " in each.name))
+    return tuple(StatedSignal(each.name, _type(each), writer.definition(each)) for each in found)
+
+
+def _type(signal: e.Signal) -> str:
+    """The type of the values of a signal, as ROS 2 has it."""
+    one = signal.type if signal.type.element is None else signal.type.element
+    numbers = next(name for name, numbers in PRIMITIVES.items() if numbers == signal.numbers)
+    names = {e.ValueType.BOOLEAN: "bool", e.ValueType.STRING: "string"}
+    return names.get(one, numbers) + ("" if one is signal.type else "[]")
 
 
 def _before(of: PropertySpecification) -> Iterator[ltl.Formula]:
@@ -149,6 +166,14 @@ class _Writer:
                 return {"predicate": self._predicate(predicate, dict(conditions))}
             case _:
                 assert_never(of)
+
+    def definition(self, signal: e.Signal) -> dict[str, object]:
+        """What a signal is: a field, or an expression, whose latest value it is."""
+        if isinstance(signal.definition, e.Field):
+            return _field(signal.definition)
+        found = self.expression(signal.definition)
+        assert isinstance(found, dict), "it is computed from other signals"
+        return found
 
     def _current(self, wanted: e.Current, signal: e.Signal) -> Json:
         if (standing := self._standing.get(wanted)) is not None:

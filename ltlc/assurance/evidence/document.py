@@ -46,6 +46,14 @@ class StatedAtom(NamedTuple):
     condition: Data
 
 
+class StatedSignal(NamedTuple):
+    """A signal that a table may have a column of: the type of its values as ROS 2 has it, and what it is otherwise."""
+
+    name: str
+    type: str
+    definition: Data
+
+
 @dataclass(frozen=True, slots=True)
 class Head:
     """What was judged, and by what.
@@ -53,7 +61,8 @@ class Head:
     `version` is that of ltlc, with its commit. `specification` and `certificates` are digests, the former with the name
     of the file. `recordings` are all files of the recording, their names relative to the folder that it is in.
     `definitions` are the types of messages that were read, with the SHA-256 of their `definition_text`. Of the times
-    that the recording was judged at and between, None is the default; `rate` is in Hz, as Python writes it.
+    that the recording was judged at and between, None is the default; `rate` is in Hz, as Python writes it. Of a table,
+    `signals` are all that its columns may be.
     """
 
     version: str
@@ -66,6 +75,7 @@ class Head:
     is_by_header: bool = False
     since: Nanoseconds | None = None
     until: Nanoseconds | None = None
+    signals: tuple[StatedSignal, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -162,6 +172,7 @@ def _head_lines(head: Head) -> Iterator[str]:
     yield f"certificates sha256 {head.certificates}"
     yield from (f"recording {file.name} {file.bytes} sha256 {file.sha256}" for file in head.recordings)
     yield from (f"definition {type_} sha256 {sha256}" for type_, sha256 in head.definitions)
+    yield from (f"signal {name} {type_} {condition_text(definition)}" for name, type_, definition in head.signals)
     if head.rate is not None:
         yield f"rate {head.rate}"
     if head.timeout is not None:
@@ -294,12 +305,13 @@ class _Reader:
         if not recordings:
             self._need("recording", "a file of the recording")
         definitions = tuple((type_, sha256) for type_, sha256 in self._all(rf"definition (\S+) sha256 {_HEX}"))
+        signals = tuple(self._signals())
         rate, timeout = self._optional(r"rate ([0-9.e+-]+)"), self._time(f"timeout {_TIME}")
         is_by_header = self._take("stamp header") is not None
         since, until = self._time(f"from {_TIME}"), self._time(f"to {_TIME}")
         return Head(
             version, (name, of_specification), certificates, recordings, definitions,
-            rate, timeout, is_by_header, since, until,
+            rate, timeout, is_by_header, since, until, signals,
         )  # fmt: skip
 
     def _properties(self) -> Iterator[Claim | NotCovered]:
@@ -325,14 +337,23 @@ class _Reader:
             label, text, atoms, int(session), letters, int(until), Verdict(verdict), int(decided), requirement, verifies
         )
 
+    def _signals(self) -> Iterator[StatedSignal]:
+        for name, type_, definition in self._all(r"signal (\S+) (\S+) (\{.*\})"):
+            yield StatedSignal(name, type_, self._data(definition))
+
     def _atoms(self) -> Iterator[StatedAtom]:
         for (name,) in self._all(f"atom {_SOME}"):
             (condition,) = self._need(r"is (\{.*\})", "what the atom is")
-            try:
-                yield StatedAtom(name, json.loads(condition))
-            except (ValueError, RecursionError):
-                self.at -= 1
-                raise _RefusedError("what the atom is, is not JSON") from None
+            yield StatedAtom(name, self._data(condition))
+
+    def _data(self, text: str) -> Data:
+        """What the last line says in JSON."""
+        try:
+            found: Data = json.loads(text)
+        except (ValueError, RecursionError):
+            self.at -= 1
+            raise _RefusedError("this is not JSON") from None
+        return found
 
     def _letters(self, atoms: int) -> tuple[Line, ...] | Summed:
         found = self._take(f"letters {_TIME} sha256 {_HEX}")

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import zip_longest
 
-from ltlc.assurance.evidence.conditions import NotCoveredError, stated_atoms
+from ltlc.assurance.evidence.conditions import NotCoveredError, stated_atoms, stated_signals
 from ltlc.assurance.evidence.document import Claim, Document, condition_text
 from ltlc.specification.specification import Specification
 
@@ -24,6 +24,8 @@ def differences(document: Document, specification: Specification) -> Iterator[st
         yield f"it has the rate {head.rate}, the specification {rate}"
     if head.timeout != specification.timeout:
         yield f"it has the timeout {head.timeout}, the specification {specification.timeout}"
+    if head.signals and head.signals != stated_signals(specification.properties):
+        yield "the signals of its table are others than those of the specification"
     for stated, of in zip_longest(document.properties, specification.properties):
         if stated is None or of is None or stated.label != of.label:
             names = ["no property" if each is None else f"`{each.label}`" for each in (stated, of)]

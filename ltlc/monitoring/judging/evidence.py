@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path, PurePath
+from threading import Thread
 
-from ltlc.assurance.evidence.conditions import NotCoveredError, stated_atoms
+from ltlc.assurance.evidence.conditions import NotCoveredError, stated_atoms, stated_signals
 from ltlc.assurance.evidence.definitions import digests
-from ltlc.assurance.evidence.document import Claim, Document, Head, NotCovered, StatedAtom, digest
+from ltlc.assurance.evidence.document import Claim, Document, Head, NotCovered, StatedAtom, StatedSignal, digest
 from ltlc.base.codes import diagnostic
 from ltlc.base.diagnostics import Diagnostic
 from ltlc.base.limits import Budget
@@ -21,6 +21,7 @@ from ltlc.inputs.recordings import Recording
 from ltlc.inputs.recordings.bags import BagRecording
 from ltlc.inputs.recordings.bags.plan import absolute
 from ltlc.inputs.recordings.digests import files_of
+from ltlc.inputs.recordings.lacks import signals_of
 from ltlc.inputs.recordings.reading import ReadOptions, Stamp
 from ltlc.monitoring.judging.part import Part
 from ltlc.monitoring.later import JudgedTrack
@@ -34,6 +35,7 @@ from ltlc.specification.specification import PropertySpecification, Specificatio
 class Evidence:
     """The part common to all recordings that `properties` judge: by their labels, their atoms or why not.
 
+    `signals` are what the columns of a table may be, or why that cannot be said.
     `version` is that of ltlc. `specification` is the name of the file and its digest, `certificates` a digest.
     """
 
@@ -42,6 +44,7 @@ class Evidence:
     certificates: str
     properties: Sequence[PropertySpecification]
     stated: Mapping[str, tuple[StatedAtom, ...] | str]
+    signals: tuple[StatedSignal, ...] | str
     rate: float | None
     timeout: Nanoseconds | None
 
@@ -88,22 +91,41 @@ def evidence_by(compiled: Sequence[Compiled], specification: Specification, budg
         digest(text),
         tuple(each.specification for each in compiled),
         stated,
+        _signals(tuple(each.specification for each in compiled)),
         specification.rate,
         specification.timeout,
     )
+
+
+def _signals(properties: Sequence[PropertySpecification]) -> tuple[StatedSignal, ...] | str:
+    """The signals that columns of a table may be, or why evidence of tables cannot say which."""
+    try:
+        return stated_signals(properties)
+    except NotCoveredError as error:
+        return str(error)
 
 
 class Digests:
     """The digests of all files of a recording, which are computed while it is judged."""
 
     def __init__(self, path: Path) -> None:
-        self._pool = ThreadPoolExecutor(1)
-        self._files: list[Future[FileDigest]] = [self._pool.submit(digest_of, at, name) for name, at in files_of(path)]
-        self._pool.shutdown(wait=False)
+        self._path = path
+        self._files: tuple[FileDigest, ...] | OSError = ()
+        self._thread = Thread(target=self._compute, daemon=True)
+        self._thread.start()
+
+    def _compute(self) -> None:
+        try:
+            self._files = tuple(digest_of(at, name) for name, at in files_of(self._path))
+        except OSError as error:
+            self._files = error
 
     def files(self) -> tuple[FileDigest, ...]:
         """The files, as soon as their digests are known. Raises OSError."""
-        return tuple(each.result() for each in self._files)
+        self._thread.join()
+        if isinstance(self._files, OSError):
+            raise self._files
+        return self._files
 
 
 @dataclass(frozen=True)
@@ -129,6 +151,7 @@ class _Judged:
             self.reading.stamp is Stamp.HEADER,
             self.part.since,
             self.part.until,
+            () if isinstance(self.recording, BagRecording) or isinstance(evidence.signals, str) else evidence.signals,
         )
         return Document(head, properties)
 
@@ -147,14 +170,12 @@ class _Judged:
         stated = evidence.stated[of.label]
         if isinstance(stated, str):
             return NotCovered(of.label, stated)
-        if not isinstance(self.recording, BagRecording):
-            return NotCovered(of.label, "the recording is a table")
         assert isinstance(track, JudgedTrack)
         letters, began = track.letters, self.session.began
         assert letters is not None
         if began is None or self.session.time is None:
             return NotCovered(of.label, "the recording has no messages")
-        if unread := self._unread(of):
+        if unread := self._unread(evidence, of):
             return NotCovered(of.label, unread)
         if letters.are_ages_apart:
             return NotCovered(of.label, "its ages count from different messages before its first step")
@@ -177,11 +198,17 @@ class _Judged:
             () if requirement is None else tuple(requirement.attributes.get("verifies", ())),
         )
 
-    def _unread(self, of: PropertySpecification) -> str:
-        """Why something that a property reads is not read of a topic that the recording has; empty if all is."""
-        assert isinstance(self.recording, BagRecording)
+    def _unread(self, evidence: Evidence, of: PropertySpecification) -> str:
+        """Why evidence cannot say what a property reads of the recording; empty if it can."""
+        columns = self.recording.columns
+        if not isinstance(self.recording, BagRecording):
+            if isinstance(evidence.signals, str):
+                return f"the recording is a table: {evidence.signals}"
+            stated = {each.name for each in evidence.signals}
+            other = next((name for name in signals_of([of]) if name in columns and name not in stated), None)
+            return "" if other is None else f"the table has a column `{other}`, which is no field and no named signal"
         topics = {absolute(name) for name in self.recording.topics}
         for signal, field in (pair for each in of.signals() for pair in fields(each)):
-            if field.topic in topics and signal.name not in self.recording.columns:
+            if field.topic in topics and signal.name not in columns:
                 return f"`{signal.name}` is not read: {self.recording.absence(signal.name)}"
         return ""

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from ltlc.backends.python.load import load_plan
 from ltlc.base.codes import diagnostic
 from ltlc.base.diagnostics import Diagnostic, Severity
-from ltlc.base.provenance import pairs, provenance
+from ltlc.base.provenance import FileDigest, pairs, provenance
 from ltlc.base.source import Source
 from ltlc.compiler import Compiled
 from ltlc.inputs.recordings import Block, Recording, RecordingError, open_recording
@@ -118,7 +118,14 @@ class RunReport:
 
     def provenance(self) -> dict[str, Any]:
         """What the run was judged with, and on: the object `provenance` of the JSON document."""
-        return provenance(filter(None, [self.specification]), () if self.file is None else digests(self.file))
+        return provenance(filter(None, [self.specification]), self._files)
+
+    @cached_property
+    def _files(self) -> tuple[FileDigest, ...]:
+        """The files of the recording with their SHA-256, which is computed once."""
+        if self.file is None:
+            return ()
+        return digests(self.file) if self.evidence is None else self.evidence.head.recordings
 
     def _diagnostics(self) -> list[dict[str, str]]:
         return [
