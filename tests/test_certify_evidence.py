@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 from bag_support import Sent, made, mcap
+from effort import share_of
 from quick_gate import quick_gate
 
 from ltlc import cli
@@ -86,10 +87,20 @@ class Made:
         self.evidence.write_text(f"{text}{END}{hashlib.sha256(text.encode()).hexdigest()}\n", encoding="utf-8")
 
 
+@pytest.fixture(scope="module")
+def files() -> dict[str, bytes]:
+    """What is made of PROPERTIES and DRIVE, once it has been made."""
+    return {}
+
+
 @pytest.fixture
-def drive(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Made:
+def drive(tmp_path: Path, capsys: pytest.CaptureFixture[str], files: dict[str, bytes]) -> Made:
     found = Made(tmp_path, capsys)
-    found.make()
+    if not files:
+        found.make()
+        files |= {path.name: path.read_bytes() for path in tmp_path.iterdir()}
+    for name, content in files.items():
+        (tmp_path / name).write_bytes(content)
     return found
 
 
@@ -289,7 +300,7 @@ def test_the_judge_finds_every_verdict_of_random_runs_of_all_operators(tmp_path:
     by = evidence_by(prepared.compiled, prepared.specification, Budget())
     entries = {each.label: each for each in parse(certificates(prepared.compiled, Budget())[0])}
     judge = Judge(prepared.compiled, prepared.specification, evidence=by)
-    for number in range(25):
+    for number in range(share_of(25)):
         time, messages = START, list[Sent]()
         for _ in range(chance.choice((1, 2, 5, 20, 60))):
             value = chance.choice((0.5, 1.2, 1.7, 2.5, 3.5, float("nan")))
