@@ -125,6 +125,9 @@ always atan2(x, y) < 1
 always angle_between(x, y) < 2
 always sin(x) < 0.9 and exp(x) < 10 and log(x) < 1
 always max(hypot(x, y), sign(x)) < 3
+never max(i, 0.5) > 9007199254740992
+always count(not scan > 1 and scan < 4) < 3
+always x - @{x, when not b or y > 0.4} < 2
 """.strip().splitlines()
 """All forms that evidence covers, except those of time, whose atoms are these, and the next ones."""
 

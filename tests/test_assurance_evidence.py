@@ -210,6 +210,37 @@ def test_a_part_of_a_recording_and_the_times_of_headers_are_covered(
     assert code == 0
 
 
+@pytest.mark.parametrize("sign", [1, -1])
+def test_an_integer_that_is_no_double_is_compared_exactly(sign: int, tmp_path: Path) -> None:
+    rows = [(BEGINNING, "/i", make("std_msgs/msg/Int64", data=sign * (2**53 + 1)))]
+    text = specification(["never i > 9007199254740992", "never i < -9007199254740992"])
+    document = evidence_of(text, write_bag(tmp_path / "bag", rows))
+    assert claim_of(document, f"c{(1 - sign) // 2}").letters == (Line(BEGINNING, (0,)),)
+    assert said_of(document, tmp_path / "bag")[0] == 0
+
+
+def test_a_message_at_the_very_time_of_from_is_in_the_part_that_is_judged(tmp_path: Path) -> None:
+    bag = write_bag(tmp_path / "bag", floats("/x", 1.0, 3.0, 1.0))
+    document = evidence_of(specification(["never x > 2"]), bag, ReadOptions(since=Offset(SECOND)))
+    assert claim_of(document, "c0").letters == (Line(BEGINNING + SECOND, (0,)),)
+    assert said_of(document, bag)[0] == 0
+
+
+@pytest.mark.parametrize("head", [{"timeout": SECOND}, {"is_by_header": True}])
+def test_where_the_run_depends_on_all_properties_nothing_is_claimed_of_some(
+    head: dict[str, Any], tmp_path: Path
+) -> None:
+    bag = write_bag(tmp_path / "bag", floats("/x", 1.0, 3.0))
+    document = evidence_of(specification(["never x > 2", "never x > 9"]), bag)
+    dropped = replace(document, properties=(document.properties[0], NotCovered("c1", "it is not")))
+    assert said_of(dropped, bag)[0] == 0
+    code, lines = said_of(replace(dropped, head=replace(document.head, **head)), bag)
+    assert (code, lines[-1]) == (
+        1,
+        "REFUSED: something is claimed of some properties only, though the run depends on all",
+    )
+
+
 @pytest.mark.parametrize("seed", range(3))
 @pytest.mark.parametrize("rate", ["", "_rate_ = 5\n"])
 def test_a_timeout_ends_the_run_after_the_first_step_of_a_property(rate: str, seed: int, tmp_path: Path) -> None:
