@@ -30,11 +30,14 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 
-from evidencing import BEGINNING, PROPERTIES, TYPES, disagreements, header, make, write_bag
+from evidencing import BEGINNING, EVERY, TYPES, disagreements, header, make, write_bag
 
 from ltlc.assurance.evidence import recorded
 
 JOURNAL = Path(__file__).parents[1] / "build" / "evidence.jsonl"
+RUNS = len(EVERY)
+"""Property-runs on each bag."""
+
 MESSAGES = 100_000
 ODOMETRY = """
 decl x /odom nav_msgs/Odometry.pose.pose.position.x
@@ -87,7 +90,7 @@ def campaign(journal: Path, first: int, runs: int) -> int:
     known = {each["seed"]: each for each in entries(journal)}
     with journal.open("a", encoding="utf-8") as file:
         for seed in count(first):
-            if len(known) * len(PROPERTIES) >= runs:
+            if len(known) * RUNS >= runs:
                 break
             if seed not in known:
                 known[seed] = {"seed": seed, "found": tried(seed)}
@@ -96,7 +99,7 @@ def campaign(journal: Path, first: int, runs: int) -> int:
     wrong = [each for each in known.values() if each["found"]]
     for each in wrong:
         print(each["seed"], *each["found"], sep="\n  ")
-    print(f"{len(known)} bags, {len(known) * len(PROPERTIES)} property-runs, {len(wrong)} bags with differences")
+    print(f"{len(known)} bags, {len(known) * RUNS} property-runs, {len(wrong)} bags with differences")
     return 1 if wrong else 0
 
 

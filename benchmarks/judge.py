@@ -20,8 +20,8 @@ from collections.abc import Iterator
 from itertools import chain, islice
 from pathlib import Path
 
+from ltlc.assurance.evidence.claims import refusal
 from ltlc.assurance.evidence.document import Claim, Document, Head, Line, StatedAtom, digest, letters_text, printed
-from ltlc.assurance.evidence.judge import refusal
 from ltlc.base.provenance import FileDigest
 from ltlc.semantics.certificate_text import to_text
 from ltlc.semantics.ltl import And, Atom

@@ -4,7 +4,7 @@
 Require Import Ltl Properties Anew Past Relativise Encodings Agreement Clocks Registers Stutter Instants Trackers Resets
   ClockSteps Times OneClock
   Lasso Monitor Conditions Judgements Moves Machines Distribute Certificate Infinite InTime Thresholds
-  Program Follows Followed Shown Counts Intervals Held Evidence.
+  Program Follows Followed Shown Counts Intervals Held Counting Evidence Instances.
 
 (** Nothing. *)
 Definition constructive :=
@@ -19,7 +19,7 @@ Definition constructive :=
    @condition_changes_once, @valuations_on_exact, @valuations_exact, @integers_line, @singles_line, @runs_unique,
    @followed_sound, @stays_between_steps, @each_step, @ring_correct, @presumed_correct, @over_when_the_first_is,
    @interval_means, @interval_means_not, @open_for, @opened, @episode_opened, @past_part_right, @clock_part_right,
-   @next_part_right).
+   @next_part_right, @counted_parts_right, @whole_means, @evidence_of_instances, @lines_of_instance, @opened_by_is).
 
 (** At most the law of the excluded middle. *)
 Definition classical :=

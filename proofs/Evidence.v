@@ -4,11 +4,13 @@
     another, so that a recording of any length is judged in constant memory. If it accepts them all under a
     certificate that [check] accepts, the verdict that it shows, from the time on that it shows, is right for every
     run that is written down so: [evidence_of_lines]. Without time it is right for every word with these letters,
-    however often each of them comes: [evidence_untimed]. Python: [ltlc/assurance/evidence/judge.py]. *)
+    however often each of them comes: [evidence_untimed]. What is counted is worked out from the letters; and where a
+    letter says that a scope is open, so that values are what they were at its opening, it is.
+    Python: [ltlc/assurance/evidence/judge.py]. *)
 From Coq Require Import List Arith Lia Bool.
 Import ListNotations.
 Require Import Ltl Properties Past Encodings Clocks Registers Resets ClockSteps Monitor Machines Distribute Certificate
-  Infinite InTime Held.
+  Infinite InTime Counts Held Counting.
 
 (** * What is written down *)
 
@@ -44,34 +46,85 @@ Fixpoint follow (ds : list decision) (fuel : nat) (l : letter) (t : target) : op
 Definition step (M : monitor) (fuel : nat) (l : letter) (q : nat) : option nat :=
   match nth_error (edges M) q with Some t => follow (decisions M) fuel l t | None => None end.
 
-(** What does not change in a run: the certificate, its clocks, and when the session began. *)
-Record judging := { certificate_of : certificate; clocks_of : list timer; session : nat }.
+(** The scopes at whose opening values can be taken: that of the run, then those of [after] and [after_until] in the
+    order of the text. None where a scope may be open several times at once. *)
+Fixpoint scopes_within (o : option scope) (p : property) : list (option scope) :=
+  match p with
+  | Now _ | Throughout _ => []
+  | Not p | Within _ _ p => scopes_within o p
+  | And p q | Or p q | Implies p q => scopes_within o p ++ scopes_within o q
+  | Always p | Never p | Eventually p => scopes_within None p
+  | After x p => let i := option_map (fun o => AfterEvent o x) o in i :: scopes_within i p
+  | Properties.Until x p => scopes_within (option_map (fun o => BeforeEvent o x) o) p
+  | AfterUntil x y p => let i := option_map (fun o => Episodes o x y) o in i :: scopes_within i p
+  end.
+Definition scope_numbered (C : certificate) (n : nat) : option scope :=
+  nth n (Some WholeRun :: scopes_within (Some WholeRun) (subject C)) None.
 
-(** What is known after some lines: whether there were any, what operators of the past and clocks remember, the state
-    of the monitor, its verdict, and since when it is that. *)
-Record standing := { has_read : bool; remembers : memory; at_state : nat; verdict_shown : verdict; since : nat }.
+(** What does not change in a run: the certificate, its clocks, and when the session began; what is counted; the atoms
+    that say that a scope is open; and those that are news. *)
+Record judging := { certificate_of : certificate; clocks_of : list timer; session : nat;
+  counted : list (nat * count); scoped : list (nat * scope); passing_by : list nat }.
+
+(** What is known after some lines: whether there were any, what operators of the past and clocks remember, what counts
+    and scopes do, the state of the monitor, its verdict, and since when it is that. *)
+Record standing := { has_read : bool; remembers : memory; tally_so_far : list tally;
+  open_since : list (list (option nat)); at_state : nat; verdict_shown : verdict; since : nat }.
 Definition at_first : standing :=
-  {| has_read := false; remembers := ([], []); at_state := 0; verdict_shown := PresumablySatisfied; since := 0 |}.
+  {| has_read := false; remembers := ([], []); tally_so_far := []; open_since := []; at_state := 0;
+     verdict_shown := PresumablySatisfied; since := 0 |}.
+
+(** Since when scopes are open at a part, with those around them, if its letter says which are. *)
+Definition is_open (c : list (option nat)) : bool := match hd None c with Some _ => true | None => false end.
+Fixpoint open_scopes (os : list (nat * scope)) (x : part) (is_first : bool) (before : list (list (option nat))) :
+  option (list (list (option nat))) :=
+  match os with
+  | [] => Some []
+  | (a, o) :: os =>
+      let c := fst (open_part o x is_first (hd [] before)) in
+      if Bool.eqb (lets x a) (is_open c) then
+        match open_scopes os x is_first (tl before) with Some cs => Some (c :: cs) | None => None end
+      else None
+  end.
+
+(** The letter of a part, with its counts, its past and its clocks, and what is remembered then. None: they are not the
+    same at all of its instants, or it does not say which scopes are open. *)
+Definition whole_part (J : judging) (j : standing) (x : part) :
+  option (letter * memory * list tally * list (list (option nat))) :=
+  match counted_parts (counted J) (negb (has_read j)) (tally_so_far j) x with
+  | Some (y, rs) =>
+      match next_part (session J) (defined (certificate_of J)) (clocks_of J) (negb (has_read j)) (remembers j) y with
+      | Some (l, r) =>
+          match open_scopes (scoped J) {| lets := l; from := from x; upto := upto x; single := single x |}
+                  (negb (has_read j)) (open_since j) with
+          | Some cs => Some (l, r, rs, cs)
+          | None => None
+          end
+      | None => None
+      end
+  | None => None
+  end.
 
 (** Whether a part is known to be one letter of the word. Without time, a letter may come more often than its line
     says. *)
 Definition is_one (J : judging) (x : part) : bool :=
-  single x && match defined (certificate_of J), clocks_of J with [], [] => false | _, _ => true end.
+  single x && match defined (certificate_of J), clocks_of J, counted J with [], [], [] => false | _, _, _ => true end.
 
 (** The letter that a part has for the monitor has to be allowed; and to lead back to the state that it leads to, so
     that it does not matter how many instants the part has. *)
 Definition judge_part (J : judging) (j : standing) (x : part) : option standing :=
   let C := certificate_of J in
   let M := machine C in
-  match next_part (session J) (defined C) (clocks_of J) (negb (has_read j)) (remembers j) x with
-  | Some (l, r) =>
+  match whole_part J j x with
+  | Some (l, r, rs, cs) =>
       if at_letter (assumption C) l then
         match step M (length (decisions M)) l (at_state j) with
         | Some q =>
             match step M (length (decisions M)) l q, nth_error (verdicts M) q with
             | Some q', Some v =>
                 if is_one J x || (q' =? q) then
-                  Some {| has_read := true; remembers := r; at_state := q; verdict_shown := v;
+                  Some {| has_read := true; remembers := r; tally_so_far := rs; open_since := cs; at_state := q;
+                          verdict_shown := v;
                           since := if has_read j && same_verdict v (verdict_shown j) then since j else from x |}
                 else None
             | _, _ => None
@@ -100,14 +153,27 @@ Definition judge_line (J : judging) (j : standing) (l : letter) (u v : nat) (cut
   if v <? u then None
   else
     match judge_part J j {| lets := l; from := u; upto := u; single := true |} with
-    | Some j => if u <? v then judge_held J j (quiet (news (certificate_of J)) l) (S u) v cuts else Some j
+    | Some j => if u <? v then judge_held J j (quiet (passing_by J) l) (S u) v cuts else Some j
     | None => None
     end.
 
-Definition prepare (C : certificate) (began : nat) : option judging :=
-  match encoded_by C with
-  | Episode => Some {| certificate_of := C; clocks_of := timers WholeRun (judged C); session := began |}
-  | _ => None
+Fixpoint numbered (C : certificate) (os : list (nat * nat)) : option (list (nat * scope)) :=
+  match os with
+  | [] => Some []
+  | (a, n) :: os =>
+      match scope_numbered C n, numbered C os with Some o, Some os => Some ((a, o) :: os) | _, _ => None end
+  end.
+
+(** What is counted, [cs]; the atoms that say that the scope with a number is open, [os]; those that are news, [ns]. *)
+Definition prepare (C : certificate) (began : nat) (cs : list (nat * count)) (os : list (nat * nat)) (ns : list nat) :
+  option judging :=
+  match encoded_by C, numbered C os with
+  | Episode, Some os =>
+      if forallb (fun c => 0 <? many (snd c)) cs then
+        Some {| certificate_of := C; clocks_of := timers WholeRun (judged C); session := began;
+                counted := cs; scoped := os; passing_by := ns |}
+      else None
+  | _, _ => None
   end.
 
 Fixpoint judge_all (J : judging) (j : standing) (ls : list (letter * nat)) (T : nat) (cuts : list (list nat)) :
@@ -122,9 +188,9 @@ Fixpoint judge_all (J : judging) (j : standing) (ls : list (letter * nat)) (T : 
   end.
 
 (** The verdict of a recorded run, and since when it is that. *)
-Definition judge_lines (C : certificate) (began : nat) (ls : list (letter * nat)) (T : nat) (cuts : list (list nat)) :
-  option (verdict * nat) :=
-  match prepare C began with
+Definition judge_lines (C : certificate) (began : nat) (cs : list (nat * count)) (os : list (nat * nat))
+  (ns : list nat) (ls : list (letter * nat)) (T : nat) (cuts : list (list nat)) : option (verdict * nat) :=
+  match prepare C began cs os ns with
   | Some J =>
       match judge_all J at_first ls T cuts with
       | Some j => if has_read j then Some (verdict_shown j, since j) else None
@@ -171,8 +237,7 @@ Proof. intros [] []; simpl; split; congruence. Qed.
 
 Lemma judge_part_inv : forall J j x j', judge_part J j x = Some j' ->
   let C := certificate_of J in let M := machine C in let fuel := length (decisions M) in
-  exists l, next_part (session J) (defined C) (clocks_of J) (negb (has_read j)) (remembers j) x = Some (l,
-    remembers j') /\
+  exists l, whole_part J j x = Some (l, remembers j', tally_so_far j', open_since j') /\
     at_letter (assumption C) l = true /\ step M fuel l (at_state j) = Some (at_state j') /\
     (is_one J x = true \/ step M fuel l (at_state j') = Some (at_state j')) /\
       nth_error (verdicts M) (at_state j') = Some (verdict_shown j') /\
@@ -180,7 +245,7 @@ Lemma judge_part_inv : forall J j x j', judge_part J j x = Some j' ->
     since j' = if has_read j && same_verdict (verdict_shown j') (verdict_shown j) then since j else from x.
 Proof.
   intros J j x j' H. cbv zeta. unfold judge_part in H.
-  destruct (next_part _ _ _ _ _ _) as [[l r]|]; [|congruence].
+  destruct (whole_part J j x) as [[[[l r] rs] cs]|]; [|congruence].
   destruct (at_letter _ l) eqn:HA; [|congruence]. destruct (step _ _ l (at_state j)) as [q|] eqn:H1; [|congruence].
   destruct (step _ _ l q) as [q'|] eqn:H2; [|congruence]. destruct (nth_error _ q) as [v|] eqn:H3; [|congruence].
   destruct (is_one J x || (q' =? q)) eqn:H4; [|congruence]. injection H as <-. exists l. simpl. repeat split; auto.
@@ -191,11 +256,42 @@ Qed.
 
 Section InTime.
   Variables (C : certificate) (began : nat) (s : stream) (t : times).
+  Variables (cs : list (nat * count)) (os : list (nat * scope)) (ns : list nat).
   Hypothesis Ht : passing t.
   Hypothesis dense : forall k, t (S k) <= S (t k).
+  Hypothesis some : forallb (fun c => 0 <? many (snd c)) cs = true.
   Let M := machine C.
-  Let J := {| certificate_of := C; clocks_of := timers WholeRun (judged C); session := began |}.
-  Let e := word_of C began s t.
+  Let J := {| certificate_of := C; clocks_of := timers WholeRun (judged C); session := began;
+              counted := cs; scoped := os; passing_by := ns |}.
+  Let with_all := with_counts cs s t.
+  Let e := word_of C began with_all t.
+
+  (** Which scopes are open at an instant, as its letter says. *)
+  Definition scopes_right (k : nat) : Prop :=
+    forall a o, In (a, o) os -> e k a = match scope_tracker o e k with Some _ => true | None => false end.
+  Definition chains (zs : list (nat * scope)) (k : nat) : list (list (option nat)) :=
+    map (fun ao => chain e t (snd ao) k) zs.
+
+  Lemma open_scopes_right : forall m n x, part_of e t m n x -> forall zs before found,
+    before = given m [] (chains zs) -> open_scopes zs x (m =? 0) before = Some found ->
+    found = chains zs (n - 1) /\ forall k, m <= k < n -> forall a o, In (a, o) zs ->
+      e k a = match scope_tracker o e k with Some _ => true | None => false end.
+  Proof.
+    intros m n x (P1 & P2 & P3 & P4 & P5). induction zs as [|[a o] zs IH]; intros before found HB H;
+      cbn [open_scopes] in H.
+    - injection H as <-. split; [reflexivity | intros k _ a o []].
+    - assert (HC : m = 0 \/ hd [] before = given m [] (chain e t o)).
+      { rewrite HB. unfold given. destruct m; [now left | right; reflexivity]. }
+      rewrite (open_part_right e t m n x P1 P2 P3 P4 P5 o _ HC) in H.
+      cbn [fst] in H. destruct (Bool.eqb (lets x a) _) eqn:EA; [|congruence]. apply Bool.eqb_prop in EA.
+      destruct (open_scopes zs x (m =? 0) (tl before)) as [cs'|] eqn:EO; [|congruence]. injection H as <-.
+      assert (HT : tl before = given m [] (chains zs)) by (rewrite HB; unfold given; destruct m; reflexivity).
+      destruct (IH _ _ HT EO) as [-> H2]. split.
+      + cbn [chains map snd]. f_equal. symmetry. apply (chain_same e t m n x P1 P2 P3 P4 P5); lia.
+      + intros k Hk b o' [E|Hin]; [|now apply H2]. injection E as <- <-. rewrite (P2 k Hk), EA.
+        rewrite (scope_same e t m n x P1 P2 P3 P4 P5 o k Hk). unfold is_open. rewrite chain_hd.
+        destruct (scope_tracker o e m); reflexivity.
+  Qed.
 
   (** What the monitor shows after n instants. *)
   Definition shows_at (n : nat) (v : verdict) : Prop := exists q, reaches M e n q /\ nth_error (verdicts M) q = Some v.
@@ -205,26 +301,39 @@ Section InTime.
     i < n /\ t i = u /\ (forall k, i < k <= n -> shows_at k v) /\ (0 < i -> exists w, w <> v /\ shows_at i w).
 
   Definition right_at (n : nat) (j : standing) : Prop :=
-    reaches M e n (at_state j) /\ remembers j = given n ([], []) (remembered_all t began (defined C) (judged C) s) /\
+    reaches M e n (at_state j) /\
+    remembers j = given n ([], []) (remembered_all t began (defined C) (judged C) with_all) /\
+    tally_so_far j = given n [] (tallies t cs s) /\ open_since j = given n [] (chains os) /\
+    (forall k, k < n -> scopes_right k) /\
     has_read j = negb (n =? 0) /\ (0 < n -> exists i, shows_since i n (since j) (verdict_shown j)).
 
   Lemma right_at_first : right_at 0 at_first.
-  Proof. repeat split; [apply reaches_start | intros; lia]. Qed.
+  Proof. repeat split; [apply reaches_start | intros k Hk; lia | intros; lia]. Qed.
 
   Lemma judge_part_right : forall m n x j j', right_at m j -> part_of s t m n x -> judge_part J j x = Some j' ->
     right_at n j'.
   Proof.
-    intros m n x j j' (R1 & R2 & R3 & R4) HP HJ. pose proof HP as (Hmn & _ & Hfrom & _).
+    intros m n x j j' (R1 & R2 & RT & RO & RS & R3 & R4) HP HJ. pose proof HP as (Hmn & _ & Hfrom & Hupto & Hone).
     destruct (judge_part_inv J j x j' HJ) as (l & H1 & _ & H3 & H4 & H5 & H6 & H7).
-      cbn [certificate_of clocks_of session J] in *.
+      unfold whole_part in H1. cbn [certificate_of clocks_of session counted scoped J] in *.
     rewrite R3, negb_involutive in H1.
-    destruct (next_part_right t began Ht m n (defined C) (judged C) s x _ l _ HP R2 H1) as [HL HR].
+    destruct (counted_parts cs (m =? 0) (tally_so_far j) x) as [[y rs]|] eqn:EC; [|congruence].
+    destruct (next_part began _ _ _ _ y) as [[l' r]|] eqn:EN; [|congruence].
+    destruct (open_scopes os _ (m =? 0) (open_since j)) as [found|] eqn:EO; [|congruence].
+    injection H1 as -> -> -> ->.
+    destruct (counted_parts_right t Ht m n cs s x _ y _ some HP RT EC) as [HY HT].
+    destruct (next_part_right t began Ht m n (defined C) (judged C) with_all y _ l _ HY R2 EN) as [HL HR].
+    destruct (open_scopes_right m n {| lets := l; from := from x; upto := upto x; single := single x |}) with (2 := RO)
+      (3 := EO) as [HO HS']; [repeat split; auto|].
     assert (H4' : n = S m \/ step M (length (decisions M)) l (at_state j') = Some (at_state j')).
     { destruct H4 as [H4|H4]; auto. left. apply HP. unfold is_one in H4. now apply andb_true_iff in H4. }
     assert (HS : forall k, m < k <= n -> reaches M e k (at_state j')) by exact (stays M _ e l m n _ _ R1 H3 H4' HL).
     assert (HV : forall k, m < k <= n -> shows_at k (verdict_shown j')) by (intros k Hk; exists (at_state j'); auto).
-    split; [apply HS; lia|]. split; [|split].
+    split; [apply HS; lia|]. split; [|split; [|split; [|split; [|split]]]].
     - rewrite HR. unfold given. destruct n; [lia|]. simpl. now rewrite Nat.sub_0_r.
+    - rewrite HT. unfold given. destruct n; [lia|]. simpl. now rewrite Nat.sub_0_r.
+    - rewrite HO. unfold given. destruct n; [lia|]. simpl. now rewrite Nat.sub_0_r.
+    - intros k Hk. destruct (le_lt_dec m k); [|now apply RS]. intros a o Hao. now apply (HS' k).
     - rewrite H6. destruct n; [lia | reflexivity].
     - intros _. rewrite R3 in H7. destruct (Nat.eqb_spec m 0) as [->|Hm]; simpl in H7.
       + exists 0. rewrite H7. repeat split; auto; lia.
@@ -262,7 +371,7 @@ Section InTime.
       repeat split; auto; try lia; try discriminate. intros; apply HL; lia.
   Qed.
 
-  Lemma judge_all_right : forall T N ls cuts m j j', right_at m j -> of_lines (news C) s t m ls T N ->
+  Lemma judge_all_right : forall T N ls cuts m j j', right_at m j -> of_lines ns s t m ls T N ->
     judge_all J j ls T cuts = Some j' -> right_at N j'.
   Proof.
     intros T N. induction ls as [|[l u] ls IH]; intros cuts m j j' HR H HJ; cbn [of_lines] in H; cbn [judge_all] in HJ.
@@ -278,7 +387,7 @@ Section InTime.
       destruct (Nat.ltb_spec u (next_time ls T)) as [Hu|Hu].
       + assert (Hn : S m < n).
         { destruct (Nat.eq_dec n (S m)); [subst n; simpl in H6; rewrite Nat.sub_0_r in H6; lia | lia]. }
-        apply (judge_held_right (quiet (news C) l) (next_time ls T) n (hd [] cuts) (S m) (S u) i'); auto.
+        apply (judge_held_right (quiet ns l) (next_time ls T) n (hd [] cuts) (S m) (S u) i'); auto.
         specialize (H5 Hn). specialize (dense m). lia.
       + injection EL as <-. replace n with (S m); auto.
         destruct (Nat.eq_dec n (S m)); auto. assert (HS : S m < n) by lia. specialize (H5 HS).
@@ -288,28 +397,38 @@ End InTime.
 
 (** What is accepted is right, of every run that is written down so, whatever the cuts: there is an instant at the
     time u, the i-th, such that after it and after each later one, to the end, the verdict v is right of the run up to
-    there; and before it another verdict was. *)
-Theorem evidence_of_lines : forall depth work C began ls T cuts v u, check depth work C = true ->
-  judge_lines C began ls T cuts = Some (v, u) -> forall s t N, is_run C began (s, t) ->
-    of_lines (news C) s t 0 ls T N ->
-  let right n := right_verdict (goes_on C began (s, t) n) (meets_up_to C began None) (meets_up_to C began (Some n) (s,
-    t)) in
-  exists i, i < N /\ t i = u /\ (forall n, i < n <= N -> right n v) /\ (0 < i -> exists w, w <> v /\ right i w).
+    there; and before it another verdict was. Counts are atoms of the run that mean what the language says, though they
+    are not written down; and at each instant the letter says which of the scopes in [os] are open. *)
+Theorem evidence_of_lines : forall depth work C began cs os ns ls T cuts v u, check depth work C = true ->
+  judge_lines C began cs os ns ls T cuts = Some (v, u) -> forall s t N, let r := (with_counts cs s t, t) in
+    is_run C began r -> of_lines ns s t 0 ls T N ->
+  let right n := right_verdict (goes_on C began r n) (meets_up_to C began None) (meets_up_to C began (Some n) r) in
+  let e := word_of C began (fst r) t in
+  (exists i, i < N /\ t i = u /\ (forall n, i < n <= N -> right n v) /\ (0 < i -> exists w, w <> v /\ right i w)) /\
+  (forall a n, In (a, n) os -> exists o, scope_numbered C n = Some o /\
+     forall k, k < N -> e k a = match scope_tracker o e k with Some _ => true | None => false end).
 Proof.
-  intros depth work C began ls T cuts v u HC HJ s t N HS HL right. unfold judge_lines, prepare in HJ.
-  destruct (encoded_by C) eqn:HE; try congruence. destruct (judge_all _ _ ls T cuts) as [j|] eqn:EJ; [|congruence].
+  intros depth work C began cs os ns ls T cuts v u HC HJ s t N r HS HL right e. unfold judge_lines, prepare in HJ.
+  destruct (encoded_by C) eqn:HE; try congruence. destruct (numbered C os) as [os'|] eqn:EO; [|congruence].
+  destruct (forallb _ cs) eqn:EF; [|congruence]. destruct (judge_all _ _ ls T cuts) as [j|] eqn:EJ; [|congruence].
   destruct (has_read j) eqn:EA; [|congruence]. injection HJ as <- <-. pose proof HS as [[H1 H2 _ _] _].
-  destruct (judge_all_right C began s t H1 H2 T N ls cuts 0 _ j (right_at_first C began s t) HL EJ) as (_ & _ & R3 &
-    R4).
+  destruct (judge_all_right C began s t cs os' ns H1 H2 EF T N ls cuts 0 _ j (right_at_first C began s t cs os') HL EJ)
+    as (_ & _ & _ & _ & RS & R3 & R4).
   assert (HN : 0 < N) by (destruct N; [simpl in R3; congruence | lia]).
-  assert (HR : forall n w, shows_at C began s t n w -> right n w).
+  assert (HR : forall n w, shows_at C began s t cs n w -> right n w).
   { intros n w (q & Q1 & Q2).
-    assert (HRd : reading (word_of C began s t) t (fun k => k) n).
+    assert (HRd : reading (word_of C began (fst r) t) t (fun k => k) n).
     { split; intros; auto; try lia. now replace k with j0 by lia. }
-    destruct (certified depth work C HC HE began s t (fun k => k) n HS HRd) as (q' & w' & A & B & D).
+    destruct (certified depth work C HC HE began (fst r) t (fun k => k) n HS HRd) as (q' & w' & A & B & D).
     assert (q' = q) by (eapply reaches_unique; eauto). subst q'. rewrite Q2 in B. injection B as <-. exact D. }
-  destruct (R4 HN) as (i & I1 & I2 & I3 & I4). exists i. repeat split; auto. intros Hi.
-  destruct (I4 Hi) as (w & W1 & W2). eauto.
+  split.
+  - destruct (R4 HN) as (i & I1 & I2 & I3 & I4). exists i. repeat split; auto. intros Hi.
+    destruct (I4 Hi) as (w & W1 & W2). eauto.
+  - clear - EO RS. revert os' EO RS. induction os as [|[b m] os IH]; intros os' EO RS a n Hin; [destruct Hin|].
+    cbn [numbered] in EO. destruct (scope_numbered C m) as [o|] eqn:ES; [|congruence].
+    destruct (numbered C os) as [rest|] eqn:EN; [|congruence]. injection EO as <-. destruct Hin as [E|Hin].
+    + injection E as -> ->. exists o. split; auto. intros k Hk. apply (RS k Hk). now left.
+    + apply (IH rest); auto. intros k Hk a' o' Hao. apply (RS k Hk). now right.
 Qed.
 
 (** * Without time *)
@@ -326,11 +445,11 @@ Qed.
 Section Untimed.
   Variables (C : certificate) (began : nat) (s : stream).
   Hypothesis no_past : defined C = [].
-  Hypothesis no_news : news C = [].
   Hypothesis no_bounds : unbounded (subject C) = true.
   Let M := machine C.
   Let fuel := length (decisions M).
-  Let J := {| certificate_of := C; clocks_of := timers WholeRun (judged C); session := began |}.
+  Let J := {| certificate_of := C; clocks_of := timers WholeRun (judged C); session := began;
+              counted := []; scoped := []; passing_by := [] |}.
 
   (** The letter l has led to the state of j, and leads back to it. *)
   Definition settled (l : letter) (j : standing) : Prop :=
@@ -341,9 +460,10 @@ Section Untimed.
     settled l j' /\ step M fuel l (at_state j) = Some (at_state j').
   Proof.
     intros l x j j' Hl HJ. destruct (judge_part_inv J j x j' HJ) as (l' & H1 & H2 & H3 & H4 & H5 & _).
-    unfold is_one in H4. cbn [certificate_of clocks_of session J] in *. unfold judged in H1, H4.
+    unfold is_one in H4. unfold whole_part in H1. cbn [certificate_of clocks_of session counted scoped J] in *.
+    unfold judged in H1, H4.
     rewrite no_past, unbounded_distribute, unbounded_timers in H1, H4 by exact no_bounds. cbn in H1.
-      injection H1 as <- _.
+      injection H1 as <- _ _ _.
     rewrite andb_false_r in H4. destruct H4 as [H4|H4]; [discriminate|].
     assert (HL : forall q, step M fuel l q = step M fuel (timed_letter [] [] (lets x)) q).
     { intros q. unfold step. destruct (nth_error (edges M) q); auto. apply follow_same. intros a. now rewrite <- Hl. }
@@ -377,7 +497,7 @@ Section Untimed.
         destruct (judge_part J j _) as [i'|] eqn:EP; [|congruence].
         destruct (judge_part_settles l {| lets := l; from := u; upto := u; single := true |} j i') as [S1 S2]; auto.
         destruct (u <? next_time ls T); [|injection EL as <-; auto].
-        assert (HQ : forall a, quiet (news C) l a = l a) by (intros a; unfold quiet; now rewrite no_news).
+        assert (HQ : forall a, quiet [] l a = l a) by reflexivity.
         destruct (judge_held_settles l _ _ _ _ _ _ HQ S1 EL) as [S3 S4]. split; congruence. }
       destruct HI as [(S1 & S2 & S3) S4].
       assert (HRn : reaches M s n (at_state i)) by (apply (stays M fuel s l m n (at_state j)); auto; lia).
@@ -390,14 +510,15 @@ End Untimed.
 
 (** What is accepted is right of every word with these letters, each at least once. *)
 Theorem evidence_untimed : forall depth work C began ls T cuts v u, check depth work C = true -> untimed C = true ->
-  judge_lines C began ls T cuts = Some (v, u) -> forall s N, spells s 0 ls N ->
+  judge_lines C began [] [] [] ls T cuts = Some (v, u) -> forall s N, spells s 0 ls N ->
   right_verdict (goes_on_as C s N) (meets_always C) (meets_so_far C s N) v.
 Proof.
   intros depth work C began ls T cuts v u HC HU HJ s N HL. unfold judge_lines, prepare in HJ.
-  destruct (encoded_by C) eqn:HE; try congruence. destruct (judge_all _ _ ls T cuts) as [j|] eqn:EJ; [|congruence].
+  destruct (encoded_by C) eqn:HE; try congruence. cbn [numbered forallb] in HJ.
+  destruct (judge_all _ _ ls T cuts) as [j|] eqn:EJ; [|congruence].
   destruct (has_read j) eqn:EA; [|congruence]. injection HJ as <- <-. unfold untimed in HU.
   destruct (defined C) eqn:HD; [|congruence]. destruct (news C) eqn:HN; [|congruence].
-  destruct (judge_all_spells C began s HD HN HU T N ls cuts 0 at_first j (reaches_start _ _) HL) with (2 := EJ)
+  destruct (judge_all_spells C began s HD HU T N ls cuts 0 at_first j (reaches_start _ _) HL) with (2 := EJ)
     as (R1 & R2 & R3); [intros; lia|].
   destruct (certified_untimed depth work C HC HE HU HD HN s N R2) as (q & v & A & B & D).
   assert (q = at_state j) by (eapply reaches_unique; eauto). subst q. rewrite R3 in B; auto; [injection B as <-;

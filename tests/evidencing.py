@@ -20,7 +20,11 @@ from rosbags.rosbag2 import StoragePlugin, Writer  # noqa: TID251
 from rosbags.typesys import Stores, get_typestore  # noqa: TID251
 
 from ltlc.assurance.evidence import recorded
+from ltlc.assurance.evidence.certified import certificates
+from ltlc.assurance.evidence.checked import checked
 from ltlc.assurance.evidence.document import Document, printed
+from ltlc.assurance.evidence.parsing import parsed
+from ltlc.assurance.evidence.reader import Read
 from ltlc.automata import Budget
 from ltlc.base.source import Source
 from ltlc.inputs.recordings.reading import DEFAULT, ReadOptions
@@ -28,6 +32,8 @@ from ltlc.interfaces.api.prepare import prepare
 from ltlc.monitoring.judging.evidence import evidence_by
 from ltlc.monitoring.judging.run import Judge
 from ltlc.runtime.times import seconds_text
+from ltlc.semantics.certificate_reader import parse
+from ltlc.semantics.certificate_text import Entry
 from ltlc.semantics.encodings import EPISODE
 
 HEAD = """
@@ -42,6 +48,9 @@ decl pos /j JointState.position
 decl pos1 /j JointState.position[1]
 decl vel /j JointState.velocity
 decl status /g action_msgs/GoalStatusArray.status_list[].status
+decl goal /g action_msgs/GoalStatusArray.status_list[].goal_info.goal_id
+decl jn /j JointState.name
+decl position /j JointState.position
 decl tx /tf TFMessage.transforms[].transform.translation.x
 decl ty /tf TFMessage.transforms[].transform.translation.y
 decl tn /tf TFMessage.transforms[].child_frame_id
@@ -117,7 +126,60 @@ always angle_between(x, y) < 2
 always sin(x) < 0.9 and exp(x) < 10 and log(x) < 1
 always max(hypot(x, y), sign(x)) < 3
 """.strip().splitlines()
-"""All forms that evidence covers, except those of time, whose atoms are these."""
+"""All forms that evidence covers, except those of time, whose atoms are these, and the next ones."""
+
+COUNTS = """
+never once new b 4 times within 10 s
+always (b implies not once x > 2 3 times)
+never once (new b and x > 1) 2 times
+after_until b, x > 3, eventually once y > 1 2 times within 3 s
+always (once x > 1 2 times within 1 s implies eventually b within 1 s)
+never once (x > 1 or b) 3 times
+always (once new m 2 times within 500 ms implies age(x) <= 1 s)
+always historically not once new x 2 times within 300 ms for 1 s
+""".strip().splitlines()
+
+OPENINGS = """
+after b, always x <= @{x, opening} + 1
+(after_until b, x > 1.5, never x < @{x, opening}) and x < @{x, opening} + 3
+after_until b and x > 0, x > @{x, opening} + 1, never y > 2
+never x > @{x, opening} + 2
+after_until b, x > @{x, opening}, age(y) <= 1 s
+after_until once b within 2 s, x < 1, y <= @{y, opening} + x / @{x, opening}
+after new b, within 2 s, after x > 1, always x <= @{x, opening}
+after_until once x > 1 2 times within 3 s, new m, y <= @{y, opening}
+until b, x <= @{x, opening} + 1 and y < 3
+after_until x > 0, x < 0, after_until y > 0, y > @{y, opening}, x >= @{x, opening} - 1
+after m == "go", m == @{m, opening} or x > @{x, opening} - 1
+""".strip().splitlines()
+
+INSTANCES = """
+each new b: eventually x > 1 within 2 s
+each new x: (eventually b within 3 s) and (after x > 1, eventually y < 1 within 2 s)
+each new m limit 100: not (b and x > 2)
+each new b: eventually new x within 500 ms
+each new x: after_until b, x > 2, never y > 1
+each new z: once b 2 times within 2 s or x < 1
+each new m: eventually (new m and m == "go") within 1 s
+each new b: always age(x) <= 3 s
+each new b: eventually once x > 1 within 1 s within 2 s
+""".strip().splitlines()
+
+SLICES = """
+each a of i: eventually x > 1 and new i within 2 s
+each j of jn: always (position > 1 implies eventually b within 1 s)
+each c of tn: never (tx > 1 and ty > 1)
+each c of tn: never abs(tx - @{tx, -1}) > 1.5
+each j of jn: never position + vel > 3
+each mode of m: always (new m implies eventually x > 1 within 1 s)
+each c of tn: after_until tx > 0, tx < 0, eventually ty > 1
+each j of jn: never once new position 3 times within 2 s
+each c of tn: always (new b implies once tx > 0.5 within 3 s)
+each a of i: never (a > 5 and x > 2)
+each g of goal: eventually status in {4, 6} within 1 s
+""".strip().splitlines()
+
+EVERY = (*PROPERTIES, *COUNTS, *OPENINGS, *INSTANCES, *SLICES)
 
 TYPES = {
     "/x": "std_msgs/msg/Float64",
@@ -169,11 +231,7 @@ class Messages:
                     name, header=header(), name=joints, position=position, velocity=velocity, effort=np.array([])
                 )
             case "/g":
-                info = make("action_msgs/msg/GoalInfo", goal_id=uuid(), stamp=stamp())
-                goals = [
-                    make("action_msgs/msg/GoalStatus", goal_info=info, status=choose([1, 2, 4, 6]))
-                    for _ in range(choose([0, 1, 2]))
-                ]
+                goals = [self._goal() for _ in range(choose([0, 1, 2]))]
                 return make(name, status_list=goals)
             case "/tf":
                 return make(name, transforms=[self._transform() for _ in range(choose([0, 1, 2, 3]))])
@@ -188,6 +246,11 @@ class Messages:
 
     def _usual(self) -> float:
         return self._chance.choice([0.0, 0.3, 0.5, 1.0, 1.7, 2.5, -1.0])
+
+    def _goal(self) -> Any:
+        goal = make("unique_identifier_msgs/msg/UUID", uuid=np.full(16, self._chance.choice([0, 1]), np.uint8))
+        info = make("action_msgs/msg/GoalInfo", goal_id=goal, stamp=stamp())
+        return make("action_msgs/msg/GoalStatus", goal_info=info, status=self._chance.choice([1, 2, 4, 6]))
 
     def _vector(self, of: str) -> Any:
         return make(f"geometry_msgs/msg/{of}", x=self._usual(), y=self._usual(), z=self._usual())
@@ -212,10 +275,6 @@ def stamp() -> Any:
 
 def header() -> Any:
     return make("std_msgs/msg/Header", stamp=stamp(), frame_id="")
-
-
-def uuid() -> Any:
-    return make("unique_identifier_msgs/msg/UUID", uuid=np.zeros(16, np.uint8))
 
 
 def write_bag(path: Path, rows: Sequence[tuple[int, str, Any]], storage: StoragePlugin = StoragePlugin.MCAP) -> Path:
@@ -295,14 +354,14 @@ def evidence_of(text: str, path: Path, reading: ReadOptions = DEFAULT) -> Docume
     return found
 
 
-def said_of(document: Document | str, *paths: Path) -> tuple[int, list[str]]:
+def said_of(document: Document | str, *paths: Path, fill: Path | None = None) -> tuple[int, list[str]]:
     """What `recorded.py` says of an evidence and a recording: its exit code, and its lines."""
     text = document if isinstance(document, str) else printed(document)
     file = paths[0].parent / "evidence.txt"
     file.write_text(text, encoding="utf-8")
     output = io.StringIO()
     with redirect_stdout(output), redirect_stderr(output):
-        code = recorded.main([str(file), *map(str, paths)])
+        code = recorded.main([str(file), *map(str, paths), *(() if fill is None else ("--fill", str(fill)))])
     return code, output.getvalue().splitlines()
 
 
@@ -311,13 +370,13 @@ def specification(properties: Sequence[str], settings: str = "") -> str:
     return f"{settings}{HEAD}{''.join(lines)}"
 
 
-def disagreements(seed: int, folder: Path) -> Iterator[str]:
-    """What `recorded.py` does not find as ltlc has it, of all properties on a random bag, with a rate or without.
+def disagreements(seed: int, folder: Path, properties: Sequence[str] = EVERY) -> Iterator[str]:
+    """What `recorded.py` does not find as ltlc has it, of `properties` on a random bag, with a rate or without.
 
     The same messages are in a table, too, as far as tables have them.
     """
     chance = Random(seed)
-    text = specification(PROPERTIES, chance.choice(["", "", "_rate_ = 5\n", "_rate_ = 3\n"]))
+    text = specification(properties, chance.choice(["", "", "_rate_ = 5\n", "_rate_ = 3\n"]))
     rows, storage = random_rows(chance), chance.choice([StoragePlugin.MCAP, StoragePlugin.SQLITE3])
     ending = chance.choice([".csv", ".jsonl", ".parquet"])
     for recording in (write_bag(folder / "bag", rows, storage), write_table(folder / f"table{ending}", rows)):
@@ -326,3 +385,25 @@ def disagreements(seed: int, folder: Path) -> Iterator[str]:
         yield from (f"{recording.name}: {line}" for line in lines if not any(each in line for each in fine))
         if code:
             yield f"{recording.name}: exit code {code}"
+
+
+@cache
+def entries_of(text: str) -> dict[str, Entry]:
+    """The certificates of a specification, by label."""
+    found, reasons = certificates(judge_of(text).compiled, Budget(60.0, 4000))
+    assert not reasons
+    return {entry.label: entry for entry in parse(found)}
+
+
+def refusals(document: Document, text: str, bag: Path) -> list[str]:
+    """What each check of `document` says that does not accept one of its claims, with the name of the check."""
+    lines = said_of(document, bag, fill=bag.parent / "filled")[1]
+    filled = parsed((bag.parent / "filled").read_text(encoding="utf-8"))
+    assert isinstance(filled, Document)
+    read = Read(tuple(line.partition(": ")[2] for line in lines[: len(document.properties)]), filled)
+    checks = (
+        check
+        for each in checked(document, judge_of(text).specification, entries_of(text), read)
+        for check in each.checks
+    )
+    return [f"{check.what}: {check.refusal}" for check in checks if check.refusal is not None]

@@ -14,20 +14,25 @@ import random
 import sys
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
 from test_semantics_certificate_text import entry
-from timed import Draw, ordinary_atoms
+from timed import ARRIVAL, MARK, Draw, X, Y, ordinary_atoms
 
+from ltlc.assurance.evidence.claims import refusal
+from ltlc.assurance.evidence.counting import stated_count
 from ltlc.assurance.evidence.document import Claim, Document, Head, Line, StatedAtom, Summed, digest, printed
-from ltlc.assurance.evidence.judge import refusal
 from ltlc.base.provenance import FileDigest
 from ltlc.semantics.alphabet import Alphabet, Group
 from ltlc.semantics.certificate_reader import UnreadableError, parse
 from ltlc.semantics.certificate_text import Entry, to_text
 from ltlc.semantics.encodings import EPISODE, encode
-from ltlc.semantics.timed_atoms import News, TimedAtom, atoms_within
+from ltlc.semantics.intervals import without_intervals
+from ltlc.semantics.ltl import And, Formula, Not
+from ltlc.semantics.properties import After
+from ltlc.semantics.timed_atoms import News, Occurred, TimedAtom, atoms_within, news_of
 from ltlc.semantics.verdicts import Verdict
 from ltlc.semantics.words import letters_over
 
@@ -48,8 +53,15 @@ class Case(NamedTuple):
 
 
 def drawn(seed: int) -> Entry:
-    """The certificate of a random property with bounds and the past; of every third, not all letters exist."""
+    """The certificate of a random property with bounds and the past; of every third, not all letters exist.
+
+    Every fifth is of instances.
+    """
     property_ = Draw(seed).property(depth=1 + seed % 2)
+    if seed % 5 == 4:
+        draw = Draw(seed)
+        bodies = (draw.property(depth=0) for _ in range(100))
+        property_ = After(MARK, next(each for each in bodies if without_intervals(each) == each))
     atoms = ordinary_atoms(encode(property_, EPISODE))
     chance = random.Random(seed)
     letters = [*letters_over(atoms)]
@@ -69,24 +81,58 @@ def atoms_of(of: Entry) -> tuple[str, ...]:
     return tuple(name for name in of.certificate.monitor.atoms if defined.get(name, True))
 
 
-def claim(of: Entry, session: int, lines: Sequence[Line], until: int, verdict: Verdict) -> Claim:
+def drawn_counts(of: Entry, chance: random.Random) -> tuple[Occurred, ...]:
+    """An atom of the certificate is a count of the others; none, if it has no such atom."""
+    if "z" not in atoms_of(of):
+        return ()
+    some: list[Formula] = [X, Not(Y), And(X, Y), ARRIVAL, And(ARRIVAL, X), Y]
+    operand = chance.choice(some)
+    within = chance.choice((None, 1, 2, 4))
+    is_presumed = within is not None and chance.random() < 1 / 3
+    return (Occurred("z", operand, chance.randint(1, 3), within, not news_of(operand), is_presumed),)
+
+
+def names_of(of: Entry, counts: Sequence[Occurred] = ()) -> tuple[str, ...]:
+    """The names of the atoms that evidence needs, if some of those of the certificate are counts of others."""
+    counted = (atom.name for count in counts for atom in atoms_within(count.operand))
+    found = dict.fromkeys((*atoms_of(of), *counted))
+    return tuple(name for name in found if name not in {count.name for count in counts})
+
+
+def claim(
+    of: Entry, session: int, lines: Sequence[Line], until: int, verdict: Verdict, counts: Sequence[Occurred] = ()
+) -> Claim:
     """A claim about a run with these letters, made at its end."""
-    stated = tuple(StatedAtom(name, {}) for name in atoms_of(of))
-    return Claim(of.label, "drawn", stated, session, tuple(lines), until, verdict, until)
+    names = names_of(of, counts)
+    stated = tuple(StatedAtom(name, {}) for name in names)
+    counted = tuple(stated_count(count, {name: n for n, name in enumerate(names)}) for count in counts)
+    return Claim(
+        of.label,
+        "drawn",
+        stated,
+        session,
+        tuple(lines),
+        until,
+        verdict,
+        until,
+        counts=counted,
+        opens=names.index(MARK.name) if MARK.name in names else None,
+    )
 
 
 def random_claim(of: Entry, chance: random.Random) -> Claim:
     """A claim about any lines, true or not: times may go back, and letters may be none that exist."""
-    time, lines = chance.choice((5, 10**18)), []
+    time, lines = chance.choice((5, 10**18)), list[Line]()
+    counts = drawn_counts(of, chance) if chance.random() < 1 / 2 else ()
     session = time - chance.randint(0, 3)
     for _ in range(chance.randint(1, 7)):
-        held = tuple(n for n in range(len(atoms_of(of))) if chance.random() < 1 / 2)
+        held = tuple(n for n in range(len(names_of(of, counts))) if chance.random() < 1 / 2)
         lines.append(Line(time, held))
         time += chance.choice((0, 0, 1, 1, 2, 3, 5))
     until = time if chance.random() < 0.95 else lines[-1].time - 1
-    return claim(
-        of, session, lines if chance.random() < 0.98 else (), until, chance.choice([*Verdict, *SOME, *SOME, *SOME])
-    )
+    some = lines if chance.random() < 0.98 else ()
+    found = claim(of, session, some, until, chance.choice([*Verdict, *SOME, *SOME, *SOME]), counts)
+    return found if chance.random() < 0.9 or not names_of(of) else replace(found, opens=chance.choice((None, 0)))
 
 
 def cases(seeds: Iterable[int] = range(PROPERTIES), claims: int = CLAIMS) -> Iterator[Case]:

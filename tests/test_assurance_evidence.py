@@ -29,17 +29,8 @@ from rosbags.typesys import Stores, get_typestore  # noqa: TID251
 
 from ltlc.assurance.evidence import recorded
 from ltlc.assurance.evidence.definitions import definition_text
-from ltlc.assurance.evidence.document import (
-    Claim,
-    Document,
-    Line,
-    NotCovered,
-    StatedAtom,
-    Summed,
-    digest,
-    parsed,
-    printed,
-)
+from ltlc.assurance.evidence.document import Claim, Document, Line, NotCovered, StatedAtom, Summed, digest, printed
+from ltlc.assurance.evidence.parsing import parsed
 from ltlc.assurance.evidence.seam import difference, differences
 from ltlc.cli import main
 from ltlc.inputs.messages.definitions import MessageTypes, shipped
@@ -234,10 +225,11 @@ def test_a_timeout_ends_the_run_after_the_first_step_of_a_property(rate: str, se
 @pytest.mark.parametrize(
     ("text", "reason"),
     [
-        ("after x > 1, always x < @{x, opening} + 1", "values at openings"),
-        ("never once x > 2 3 times", "counts how often"),
-        ("each g of i: eventually (i == g and x > 1)", "each id"),
-        ("each new x: eventually y > 1 within 1 s", "each id or message"),
+        ("after age(x) > 1 s, always x < @{x, opening} + 1", "an age opens or closes a scope"),
+        ("after_until x < 2, new y, x < @{x, opening} + 1", "between two steps"),
+        ("each g of i: always age(i) <= 1 s or g > 1", "ages, for each id"),
+        ("each new x: after y > 1, always x < @{x, opening}", "values at openings, from each message on"),
+        ("each new x: eventually y > 1 within [1 s, 2 s]", "an interval, from each message on"),
         ("always (new x implies not previously new x)", "a nanosecond ago"),
     ],
 )

@@ -15,14 +15,12 @@ from ltlc.assurance.evidence.document import (
     NotCovered,
     StatedAtom,
     Summed,
-    UnreadableEvidence,
     digest,
     letters_text,
-    parsed,
-    parsed_all,
     printed,
     summed,
 )
+from ltlc.assurance.evidence.parsing import UnreadableEvidence, parsed, parsed_all
 from ltlc.base.provenance import FileDigest
 from ltlc.semantics.verdicts import Verdict
 

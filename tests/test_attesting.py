@@ -28,7 +28,7 @@ slow: never v > 2
 [id "REQ-2"]
 fast: never v > 0.5
 owed: eventually v > 5
-forgotten: never once v > 1 2 times
+forgotten: always (new v implies not previously new v)
 """
 
 

@@ -10,7 +10,8 @@ import pytest
 from evidencing import random_rows, specification, write_bag
 
 from ltlc.assurance.evidence import recorded
-from ltlc.assurance.evidence.document import HEADER, Document, parsed_all
+from ltlc.assurance.evidence.document import HEADER, Document
+from ltlc.assurance.evidence.parsing import parsed_all
 from ltlc.cli import main
 
 TEXT = specification(["never x > 2", "always age(y) <= 1 s"])

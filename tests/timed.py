@@ -24,6 +24,7 @@ from ltlc.semantics.timed_atoms import (
     Age,
     Historically,
     News,
+    Occurred,
     Once,
     PastAtom,
     Previously,
@@ -38,7 +39,10 @@ from ltlc.specification.specification import Specification
 
 X, Y, Z = Atom("x"), Atom("y"), Atom("z")
 ARRIVAL, MESSAGE = News("new n"), News("message on n")
-NEWS = (ARRIVAL, MESSAGE)
+MARK = News("new n (this one)")
+"""What opens an instance."""
+
+NEWS = (ARRIVAL, MESSAGE, MARK)
 _EVENTS: dict[Kind, int] = {p.After: 1, p.Until: 1, p.AfterUntil: 2}
 SIGNALS = ("x", "y", "z", ARRIVAL.name, MESSAGE.name)
 
@@ -158,19 +162,21 @@ def ordinary_atoms(formula: Formula) -> tuple[str, ...]:
     return tuple(atom.name for atom in atoms_within(formula) if not isinstance(atom, TimedAtom))
 
 
-def word_of(property_: Property, run: Observation) -> tuple[Instant, ...]:
-    """All instants of `run`, by definition, with the atoms of the past."""
-    return with_past(instants(run.steps, run.until, NEWS), past_of(property_), run.session)
+def word_of(property_: Property, run: Observation, counts: Sequence[Occurred] = ()) -> tuple[Instant, ...]:
+    """All instants of `run`, by definition, with the atoms of the past, and the `counts` that atoms are."""
+    names = {count.name for count in counts}
+    steps = tuple(Step(step.time, step.letter - names) for step in run.steps)
+    return with_past(instants(steps, run.until, NEWS), [*counts, *past_of(property_)], run.session)
 
 
-def holds(property_: Property, run: Observation) -> bool:
-    """Whether `run` satisfies `property_`, by definition."""
-    return satisfies(word_of(property_, run), property_)
+def holds(property_: Property, run: Observation, counts: Sequence[Occurred] = ()) -> bool:
+    """Whether `run` satisfies `property_`, some of whose atoms are `counts`, by definition."""
+    return satisfies(word_of(property_, run, counts), property_)
 
 
-def letters_of(formula: Formula, run: Observation) -> list[Letter]:
+def letters_of(formula: Formula, run: Observation, counts: Sequence[Occurred] = ()) -> list[Letter]:
     """The letters at the steps and clock steps of `run`, with all timed atoms of `formula`."""
-    timed = TimedRun(trackers_of(formula), [ARRIVAL], run.session)
+    timed = TimedRun(trackers_of(formula), [ARRIVAL, MARK], run.session, counts=counts)
     found = [instant for step in run.steps for instant in timed.step(*step)]
     return [*found, *timed.hold(run.until)]
 

@@ -30,7 +30,7 @@ ROOMS = {
     "interfaces/commands": "test_commands_*.py test_recordings.py test_mining.py test_attesting.py",
     "analysis/comparison": "test_comparison_*.py test_commands_compare.py",
     "interfaces/editor": "test_editor.py test_editor_server.py test_editors.py",
-    "monitoring": "test_violations.py test_columns.py test_assurance_evidence.py",
+    "monitoring": "test_violations.py test_columns.py test_assurance_evidence*.py",
     "monitoring/judging": "test_recordings*.py test_one_drive_in_all_forms.py test_explained.py test_violations.py "
     "test_assurance_evidence.py",
     "frontend/language": "test_language_*.py test_ground_truth.py test_analysis_suppression.py",

@@ -233,7 +233,8 @@ class JudgedTrack(RecordedTrack):
         if later is not None:
             self.is_settled &= later.is_settled
         if self.letters is not None:
-            self.letters.step(time, self.property.given(values) if self.steps > steps else None)
+            given = (*self.property.given(values), *self.kept()) if self.steps > steps else None
+            self.letters.step(time, given)
         return previous
 
     def hold(self, time: int) -> list[Any]:
@@ -253,7 +254,10 @@ class JudgedTrack(RecordedTrack):
 
     def repeat(self, times: int, at: Iterable[int]) -> None:
         """Judge the last step `times` more times, `at` the times that it gives."""
+        steps = self.steps
         super().repeat(times, at)
+        if self.letters is not None:
+            self.letters.repeat(self.steps - steps)
         if self.later is not None:
             self.later.repeat(times, ())
 

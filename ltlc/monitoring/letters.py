@@ -13,12 +13,13 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from ltlc.assurance.evidence.document import Line, Summed
+from ltlc.assurance.evidence.document import Line, StatedScope, Summed
 from ltlc.backends.python.load import load_conditions
+from ltlc.monitoring.opened import Opened
 from ltlc.runtime.sampling import Value
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.properties import predicates
-from ltlc.semantics.timed_atoms import news_of
+from ltlc.semantics.timed_atoms import news_that_counts
 from ltlc.specification.specification import PropertySpecification
 
 MOST_BYTES = 600
@@ -34,11 +35,14 @@ class Letters:
 
     def __init__(self, of: PropertySpecification, is_at_ticks: bool) -> None:
         atoms = {atom.name: 1 << number for number, atom in enumerate(of.atoms)}
-        news = {each.name for part in predicates(of.property) for each in news_of(part)}
+        news = {each.name for part in predicates(of.property) for each in news_that_counts(part)}
         self._of = of
         self._news = sum(bit for name, bit in atoms.items() if name in news)
         self._messages = {of.arrival(name).signal.name: atoms[name] for name in of.messages()}
         self._is_at_ticks = is_at_ticks
+        self._steps = 0
+        """How many were taken by rows."""
+        self._opened = Opened(of) if of.openings() else None
         self.is_told = True
         self.is_settled = False
         self._pending: list[tuple[Nanoseconds, int]] = []
@@ -58,7 +62,7 @@ class Letters:
     @cached_property
     def _holds(self) -> Callable[..., Sequence[bool]]:
         """Which atoms hold where inputs have these values."""
-        return load_conditions((atom.condition for atom in self._of.atoms), self._of.inputs())
+        return load_conditions((atom.condition for atom in self._of.atoms), self._of.reads())
 
     def hear(self, time: Nanoseconds, signals: Container[str]) -> None:
         """Messages come from which the ages of these signals count, before they are judged by rows."""
@@ -68,7 +72,7 @@ class Letters:
                 self._pending.append((time, bits))
 
     def step(self, time: Nanoseconds, values: Sequence[Value] | None) -> None:
-        """A step with these values of the inputs was taken by rows; None: it was none."""
+        """A step with these values of the inputs and at openings was taken by rows; None: it was none."""
         if not self.is_told or self.is_settled:
             return
         if values is None:
@@ -84,16 +88,24 @@ class Letters:
         elif now & messages:
             self._pending.pop()
         self._flush()
-        self._add_one(time, now)
+        self._add_one(time, now, is_step=True)
+        self._steps += 1
+
+    def repeat(self, times: int) -> None:
+        """The last step was taken `times` more times."""
+        self._steps += times
 
     def take(self, times: NDArray[np.int64], atoms: Iterable[NDArray[np.bool_]]) -> None:
-        """Steps at these times are taken by columns, where each of the atoms holds, up to when it is settled next."""
+        """Steps at these times are taken by columns, up to when it is settled next; each of the atoms holds there.
+
+        Counts, which come after the atoms, follow from these.
+        """
         self._flush()
         self.is_told = False
         if not len(times):
             return
         self._seen = int(times[-1])
-        masks = list(atoms)
+        masks = list(atoms)[: len(self._of.atoms)]
         differs = np.zeros(len(times), np.bool_)
         differs[0] = True
         for number, mask in enumerate(masks):
@@ -116,10 +128,12 @@ class Letters:
             else:
                 self._add_one(time, self._last[1] & ~self._news | bits)
 
-    def _add_one(self, time: Nanoseconds, now: int) -> None:
+    def _add_one(self, time: Nanoseconds, now: int, *, is_step: bool = False) -> None:
         """An instant."""
         self._seen = time
         if self._last is None or time == self._last[0] or now != self._last[1] & ~self._news:
+            if self._opened is not None and is_step:
+                self._opened.step(time, now, self._steps)
             self._add(np.array([time]), np.array([now]))
 
     def _add(self, times: NDArray[np.int64], letters: NDArray[np.int64]) -> None:
@@ -132,7 +146,7 @@ class Letters:
             times, letters = times[1:], letters[1:]
         if len(times):
             self._last = int(times[-1]), int(letters[-1])
-            self._parts.append((times, letters))
+            self._parts.append((times, letters if self._opened is None else letters | self._opened.bits))
 
     def _begin(self, now: int) -> None:
         """The first step: since when ages count, of which none has a message at it."""
@@ -171,6 +185,10 @@ class Letters:
         if self._length <= MOST_BYTES:
             self._lines += [Line(time, _numbers(now)) for time, now in zip(times, letters, strict=True)]
         self._sha256.update(text.encode())
+
+    def scopes(self, until: Nanoseconds) -> tuple[StatedScope, ...] | str:
+        """When the scopes are open at whose opening values are taken, up to `until`; or why evidence cannot say it."""
+        return () if self._opened is None else self._opened.stated(until)
 
     @property
     def lines(self) -> tuple[Line, ...] | Summed:

@@ -54,8 +54,13 @@ let later t gap = if t > latest || gap > latest - t then too_late else t + gap
 
 let verdicts = [ "violated"; "satisfied"; "presumably_violated"; "presumably_satisfied"; "not_started" ]
 
-(* One property: what is read before its letters. *)
-type claim = { label : string; names : string array; session : int }
+(* One property: what is read before its letters. Of each count, its name and what is said of it; the numbers of scopes, for
+   each of which letters have an atom behind the others; the atom that opens instances, if there are any; and whether it is
+   about each id. *)
+type claim = {
+  label : string; names : string array; counts : (string * string) list; scopes : int list; opens : int option;
+  is_sliced : bool; session : int;
+}
 
 let read_claim s =
   let label = need s "property " in
@@ -67,7 +72,23 @@ let read_claim s =
     | None -> Array.of_list (Stdlib.List.rev found)
     | Some name -> ignore (need s "is {"); atoms (name :: found) in
   let names = atoms [] in
-  { label; names; session = time (need s "session ") }
+  let rec counts () =
+    match optional s "count " with
+    | None -> []
+    | Some name -> let said = need s "of " in (name, said) :: counts () in
+  let counts = counts () in
+  let number text = match String.split_on_char ' ' text with
+    | n :: _ when is_number n -> int_of_string n
+    | _ -> fail "a scope has a number" in
+  let scopes = Stdlib.List.map number (all s "scope ") in
+  let opens = match optional s "instances " with
+    | None -> None
+    | Some text ->
+        match part text with
+        | Some ('a', n) when n < Array.length names -> Some n
+        | _ -> fail "there is no such atom" in
+  let is_sliced = optional s "key " <> None in
+  { label; names; counts; scopes; opens; is_sliced; session = time (need s "session ") }
 
 (* What is in the place of letters: each line goes to [each], with its time and the numbers of its atoms as a text. *)
 let read_letters s each =
@@ -95,7 +116,7 @@ let numbers_of claim letter =
     if String.length word > 1 && word.[0] = 'a' then number (after "a" word) else fail "not an atom" in
   let numbers = if letter = "" then [] else Stdlib.List.map number (String.split_on_char ' ' letter) in
   if Stdlib.List.sort_uniq compare numbers <> numbers then fail "the atoms of a letter are not in order";
-  if Stdlib.List.exists (fun n -> n >= Array.length claim.names) numbers then fail "there is no such atom";
+  if Stdlib.List.exists (fun n -> n >= Array.length claim.names + Stdlib.List.length claim.scopes) numbers then fail "there is no such atom";
   numbers
 
 let read_end s =

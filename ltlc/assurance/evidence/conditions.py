@@ -8,18 +8,32 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
 from typing import NamedTuple, assert_never
 
-from ltlc.assurance.evidence.document import StatedAtom, StatedSignal
+from ltlc.assurance.evidence.counting import stated_count
+from ltlc.assurance.evidence.document import Data, StatedAtom, StatedCount, StatedSignal
 from ltlc.inputs.recordings.lacks import signals_of
 from ltlc.program.excused import excused
 from ltlc.program.machine import Instead
 from ltlc.semantics import ltl
 from ltlc.semantics.encodings import EPISODE, Encoding
+from ltlc.semantics.intervals import without_intervals
+from ltlc.semantics.openings import scope_clocks
 from ltlc.semantics.properties import predicates
-from ltlc.semantics.timed_atoms import Age, Late, News, Previously, atoms_within, duration_of, timed_atoms
+from ltlc.semantics.timed_atoms import (
+    Age,
+    Clock,
+    Late,
+    News,
+    Previously,
+    atoms_within,
+    clock_operands,
+    duration_of,
+    timed_atoms,
+)
 from ltlc.specification import expressions as e
-from ltlc.specification.specification import PropertySpecification, topics_of
+from ltlc.specification.specification import Instances, PropertySpecification, Slicing, fields, topics_of
 from ltlc.specification.wire import PRIMITIVES, double_or_integer
 
 Json = object
@@ -39,17 +53,22 @@ class _Standing(NamedTuple):
 
 def stated_atoms(of: PropertySpecification, encoding: Encoding = EPISODE) -> tuple[StatedAtom, ...]:
     """The atoms of a property with what they are. Raises NotCoveredError."""
-    if of.slicing is not None:
-        raise NotCoveredError("it is judged for each id or message")
-    if of.openings():
-        raise NotCoveredError("it reads values at openings")
-    if of.counts():
-        raise NotCoveredError("it counts how often something occurred")
+    if isinstance(of.slicing, Slicing):
+        _check_slices(of, of.slicing)
+    elif of.slicing is not None:
+        if of.openings():
+            raise NotCoveredError("it reads values at openings, from each message on")
+        if without_intervals(of.property) != of.property:
+            raise NotCoveredError("it has an interval, from each message on")
+        of = whole_run(of, of.slicing)
+    scopes = numbered_scopes(of)
+    if any(isinstance(atom, Age) for clock in scopes for part in clock_operands(clock) for atom in atoms_within(part)):
+        raise NotCoveredError("an age opens or closes a scope at whose opening it reads a value")
     if encoding is not EPISODE:
         raise NotCoveredError(f"verdicts under the encoding `{encoding.name}` are not proved")
     if any(map(_changes_by_itself, _before(of))):
         raise NotCoveredError("it asks what held a nanosecond ago of what changes while nothing happens")
-    if len(of.atoms) > MOST_ATOMS:
+    if len(of.atoms) + len(scopes) > MOST_ATOMS:
         raise NotCoveredError(f"it has more than {MOST_ATOMS} atoms")
     names = {each.input.signal: each for each in excused(of)}
     standing = {
@@ -57,16 +76,69 @@ def stated_atoms(of: PropertySpecification, encoding: Encoding = EPISODE) -> tup
         for wanted in of.inputs()
         if isinstance(wanted, e.Current) and (each := names.get(wanted.signal.name)) is not None
     }
-    writer, messages = _Writer(standing), of.messages()
+    openings = {opening: scopes[clock] for opening, clock in of.openings().items()}
+    writer, messages = _Writer(standing, openings), of.messages()
     return tuple(
         StatedAtom(a.name, _message(a.condition) if a.name in messages else writer.condition(a.condition))
         for a in of.atoms
     )
 
 
+def _check_slices(of: PropertySpecification, by: Slicing) -> None:
+    """Raise NotCoveredError if evidence does not cover what is judged for each id."""
+    if len(by.keys) > 1:
+        raise NotCoveredError("it is judged for each id on several topics")
+    if by.keys[0].type.element is not None and not by.arrays:
+        raise NotCoveredError("its ids are bytes")
+    if of.openings():
+        raise NotCoveredError("it reads values at openings, for each id")
+    if of.messages():
+        raise NotCoveredError("it reads ages, for each id")
+    steps = (step for each in of.inputs() for _, field in fields(each.signal) for step in field.path)
+    if e.OfSlice(is_missing=True) in steps:
+        raise NotCoveredError("it reads whether ids are gone")
+
+
+def stated_key(of: PropertySpecification) -> Data | None:
+    """What has the ids of a property that is judged for each; None if it is not."""
+    if not isinstance(of.slicing, Slicing):
+        return None
+    [key] = of.slicing.keys
+    assert isinstance(key.definition, e.Field)
+    return _field(key.definition)
+
+
+def whole_run(of: PropertySpecification, by: Instances) -> PropertySpecification:
+    """What `each new s: P` says of instances, of a run in which all its messages open one."""
+    mark, news = e.IsTrue(e.New(by.mark)), e.IsTrue(e.New(by.signal))
+    atoms = tuple(replace(atom, condition=news) if atom.condition == mark else atom for atom in of.atoms)
+    return replace(of, atoms=atoms, slicing=None)
+
+
+def opening_atom(of: PropertySpecification) -> int | None:
+    """The number of the atom that opens instances; None if there are none."""
+    if not isinstance(of.slicing, Instances):
+        return None
+    mark = e.IsTrue(e.New(of.slicing.mark))
+    return next(number for number, atom in enumerate(of.atoms) if atom.condition == mark)
+
+
+def numbered_scopes(of: PropertySpecification) -> dict[Clock, int]:
+    """The scopes at whose opening values are taken, with their numbers in the property of the certificate."""
+    clocks = scope_clocks(without_intervals(of.property))
+    found = {clock: clocks.index(clock) for clock in of.openings().values()}
+    return dict(sorted(found.items(), key=lambda pair: pair[1]))
+
+
+def stated_counts(of: PropertySpecification) -> tuple[StatedCount, ...]:
+    """What a property counts, by the numbers of its atoms."""
+    numbers = {atom.name: number for number, atom in enumerate(of.atoms)}
+    return tuple(stated_count(each, numbers) for each in of.counts())
+
+
 def stated_signals(properties: Iterable[PropertySpecification]) -> tuple[StatedSignal, ...]:
     """What a column of a table may be: fields, and what the author has named. Raises NotCoveredError."""
-    writer = _Writer({})
+    writer = _Writer({}, {})
     read = signals_of(properties).values()
     found = (each for each in read if not (each.is_taken or each.is_constant or " " in each.name))
     return tuple(StatedSignal(each.name, _type(each), writer.definition(each)) for each in found)
@@ -113,10 +185,14 @@ def _message(condition: e.Condition) -> dict[str, object]:
 
 
 class _Writer:
-    """Writes conditions and expressions; some inputs are something in place of a first value."""
+    """Writes conditions and expressions; some inputs are something in place of a first value.
 
-    def __init__(self, standing: Mapping[e.Current, _Standing]) -> None:
+    Values at `openings` are taken in the scopes with these numbers.
+    """
+
+    def __init__(self, standing: Mapping[e.Current, _Standing], openings: Mapping[e.Opening, int]) -> None:
         self._standing = standing
+        self._openings = openings
 
     def condition(self, what: e.Condition) -> dict[str, object]:
         """A condition."""
@@ -146,8 +222,8 @@ class _Writer:
                 return {"slope": True, **self._of(signal)}
             case e.New(signal):
                 return {"new": sorted(topics_of(signal))}
-            case e.Opening():
-                raise NotCoveredError("it reads values at openings")
+            case e.Opening(signal):
+                return {"opening": self._latest(signal), "scope": self._openings[of]}
             case e.Slice(array, start, stop):
                 return {"slice": [start, stop], "of": self.expression(array)}
             case e.Element(array):
@@ -237,8 +313,6 @@ def _number(value: float) -> Json:
 
 
 def _field(field: e.Field) -> dict[str, object]:
-    if any(isinstance(step, e.OfSlice) for step in field.path):
-        raise NotCoveredError("it is judged for each id or message")
     return {"topic": field.topic, "type": field.message, "path": list(_path(field.path))}
 
 
@@ -256,6 +330,6 @@ def _path(steps: Iterable[e.PathStep]) -> Iterator[Json]:
             case e.Bytes():
                 yield ["bytes"]
             case e.OfSlice():
-                return
+                yield ["own"]
             case _:
                 assert_never(step)

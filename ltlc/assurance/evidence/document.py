@@ -10,7 +10,7 @@ import hashlib
 import json
 import re
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 from ltlc.base.provenance import FileDigest
@@ -44,6 +44,40 @@ class StatedAtom(NamedTuple):
 
     name: str
     condition: Data
+
+
+class StatedCount(NamedTuple):
+    """A count by its name in the certificate, and what is counted; see `counting`."""
+
+    name: str
+    said: str
+
+
+class StatedScope(NamedTuple):
+    """A scope at whose opening values are taken, by its number in the property of the certificate.
+
+    It is open from one step up to another one, which are counted from 0; the last time perhaps to the end.
+    """
+
+    number: int
+    open: tuple[tuple[int, int | None], ...]
+
+    @property
+    def said(self) -> str:
+        """As documents have it."""
+        spans = (f" {first}-{'' if end is None else end}" for first, end in self.open)
+        return f"{self.number}{''.join(spans)}"
+
+
+@dataclass(frozen=True, slots=True)
+class StatedSlice:
+    """What was judged of one id, which is written as JSON: as of a claim its letters, up to when, and the verdict."""
+
+    id: str
+    letters: tuple[Line, ...] | Summed
+    until: Nanoseconds
+    verdict: Verdict
+    decided: Nanoseconds
 
 
 class StatedSignal(NamedTuple):
@@ -82,8 +116,11 @@ class Head:
 class Claim:
     """The verdict of one property, and the letters that it follows from.
 
-    Ages count from `session` until a message comes. The run was looked at up to `until`: the moment of the decision, or
-    the end of the recording. The verdict was right from `decided` on.
+    What is counted follows from the letters. Behind the atoms, these have one for each of the `scopes`, which says that
+    it is open. Where the atom with the number `opens` holds, an instance of the property opens. With a `key`, a field,
+    there are letters of `slices` only, in the order of their first messages. Ages count from `session` until a message
+    comes. The run was looked at up to `until`: the moment of the decision, or the end of the recording. The verdict was
+    right from `decided` on.
     """
 
     label: str
@@ -96,6 +133,23 @@ class Claim:
     decided: Nanoseconds
     requirement: str | None = None
     verifies: tuple[str, ...] = ()
+    counts: tuple[StatedCount, ...] = ()
+    scopes: tuple[StatedScope, ...] = ()
+    opens: int | None = None
+    key: Data | None = None
+    slices: tuple[StatedSlice, ...] = ()
+
+    def of_slice(self, slice_: StatedSlice) -> Claim:
+        """The claim about one slice alone."""
+        return replace(
+            self,
+            key=None,
+            slices=(),
+            letters=slice_.letters,
+            until=slice_.until,
+            verdict=slice_.verdict,
+            decided=slice_.decided,
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,14 +166,6 @@ class Document:
 
     head: Head
     properties: tuple[Claim | NotCovered, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class UnreadableEvidence:
-    """A text is no evidence: `line`, counted from 1, says something else."""
-
-    line: int
-    message: str
 
 
 def printed(document: Document) -> str:
@@ -194,179 +240,29 @@ def _claim_lines(claim: Claim) -> Iterator[str]:
     for name, condition in claim.atoms:
         yield f"atom {name}"
         yield f"is {condition_text(condition)}"
+    for name, said in claim.counts:
+        yield f"count {name}"
+        yield f"of {said}"
+    yield from (f"scope {each.said}" for each in claim.scopes)
+    if claim.opens is not None:
+        yield f"instances a{claim.opens}"
+    if claim.key is not None:
+        yield f"key {condition_text(claim.key)}"
     yield f"session {claim.session}"
-    if isinstance(claim.letters, Summed):
-        yield f"letters {claim.letters.count} sha256 {claim.letters.sha256}"
+    for each in claim.slices:
+        yield f"slice {each.id}"
+        yield from _verdict_lines(each)
+    yield from _verdict_lines(claim)
+
+
+def _verdict_lines(of: Claim | StatedSlice) -> Iterator[str]:
+    if isinstance(of.letters, Summed):
+        yield f"letters {of.letters.count} sha256 {of.letters.sha256}"
     else:
-        yield from (text.rstrip("\n") for text in letters_text(claim.letters))
-    yield f"until {claim.until}"
-    yield f"verdict {claim.verdict.value} {claim.decided}"
+        yield from (text.rstrip("\n") for text in letters_text(of.letters))
+    yield f"until {of.until}"
+    yield f"verdict {of.verdict.value} {of.decided}"
 
 
 _TEXT = re.compile(r"[^\x00-\x1f\x7f\x85\u2028\u2029]+")
 """What fits on a line."""
-
-_TIME, _HEX, _SOME = r"(0|[1-9][0-9]{0,18})", r"([0-9a-f]{64})", r"(\S|\S.*\S)"
-_LETTER = r"((?: a(?:0|[1-9][0-9]{0,5}))*)"
-
-
-def parsed(text: str) -> Document | UnreadableEvidence:
-    """The one document that `text` is."""
-    found = parsed_all(text)
-    if isinstance(found, UnreadableEvidence):
-        return found
-    return found[0] if len(found) == 1 else UnreadableEvidence(1, f"there are {len(found)} documents")
-
-
-def parsed_all(text: str) -> tuple[Document, ...] | UnreadableEvidence:
-    """The documents that stand one after the other in `text`: those of a campaign."""
-    reader = _Reader(text)
-    try:
-        return tuple(reader.documents())
-    except _RefusedError as error:
-        return UnreadableEvidence(reader.at + 1, str(error))
-
-
-def _is_printed(document: Document, text: str) -> bool:
-    try:
-        return printed(document) == text
-    except (ValueError, RecursionError):
-        return False
-
-
-class _RefusedError(Exception):
-    """Why a line cannot stand where it does."""
-
-
-class _Reader:
-    """Reads a text line by line; `at` is the number of the next one, from 0."""
-
-    def __init__(self, text: str) -> None:
-        self._lines = text.split("\n")
-        self.at = 0
-
-    def documents(self) -> Iterator[Document]:
-        """All that there are, at least one."""
-        while True:
-            yield self._document()
-            if self.at == len(self._lines) - 1 and not self._lines[-1]:
-                return
-
-    def _document(self) -> Document:
-        first = self.at
-        document = Document(self._head(), tuple(self._properties()))
-        (sha256,) = self._need(END + _HEX, "the SHA-256 of all lines before")
-        end, self.at = self.at, self.at - 1
-        if end == len(self._lines):
-            raise _RefusedError("the last line has no end")
-        text = "".join(f"{line}\n" for line in self._lines[first : self.at])
-        if digest(text) != sha256:
-            raise _RefusedError("this is not the SHA-256 of the lines before: something was changed")
-        if not _is_printed(document, f"{text}{END}{sha256}\n"):
-            raise _RefusedError("the document is not written as it should be")
-        self.at = end
-        return document
-
-    def _take(self, pattern: str) -> tuple[str, ...] | None:
-        """The groups of the next line, if it is all that the pattern says."""
-        line = self._lines[self.at] if self.at < len(self._lines) else ""
-        found = re.fullmatch(pattern, line)
-        if found is None:
-            return None
-        self.at += 1
-        return found.groups()
-
-    def _need(self, pattern: str, what: str) -> tuple[str, ...]:
-        found = self._take(pattern)
-        if found is None:
-            line = self._lines[self.at] if self.at < len(self._lines) else ""
-            raise _RefusedError(f"expected {what}, found `{line[:80]}`" if line else f"expected {what}")
-        return found
-
-    def _all(self, pattern: str) -> Iterator[tuple[str, ...]]:
-        while (found := self._take(pattern)) is not None:
-            yield found
-
-    def _optional(self, pattern: str) -> str | None:
-        found = self._take(pattern)
-        return None if found is None else found[0]
-
-    def _time(self, pattern: str) -> Nanoseconds | None:
-        found = self._optional(pattern)
-        return None if found is None else int(found)
-
-    def _head(self) -> Head:
-        self._need(HEADER, f"`{HEADER}`")
-        (version,) = self._need(f"ltlc {_SOME}", "the version of ltlc")
-        name, of_specification = self._need(f"specification {_SOME} sha256 {_HEX}", "the specification")
-        (certificates,) = self._need(f"certificates sha256 {_HEX}", "the SHA-256 of the certificates")
-        files = self._all(f"recording {_SOME} {_TIME} sha256 {_HEX}")
-        recordings = tuple(FileDigest(name, int(size), sha256) for name, size, sha256 in files)
-        if not recordings:
-            self._need("recording", "a file of the recording")
-        definitions = tuple((type_, sha256) for type_, sha256 in self._all(rf"definition (\S+) sha256 {_HEX}"))
-        signals = tuple(self._signals())
-        rate, timeout = self._optional(r"rate ([0-9.e+-]+)"), self._time(f"timeout {_TIME}")
-        is_by_header = self._take("stamp header") is not None
-        since, until = self._time(f"from {_TIME}"), self._time(f"to {_TIME}")
-        return Head(
-            version, (name, of_specification), certificates, recordings, definitions,
-            rate, timeout, is_by_header, since, until, signals,
-        )  # fmt: skip
-
-    def _properties(self) -> Iterator[Claim | NotCovered]:
-        while self._take("") is not None:
-            if (found := self._take(f"not-covered {_SOME}: {_SOME}")) is not None:
-                label, _, reason = ": ".join(found).partition(": ")
-                yield NotCovered(label, reason)
-            else:
-                yield self._claim()
-
-    def _claim(self) -> Claim:
-        (label,) = self._need(f"property {_SOME}", "a property")
-        (text,) = self._need(f"text {_SOME}", "the text of the property")
-        requirement = self._optional(f"requirement {_SOME}")
-        verifies = tuple(each for (each,) in self._all(f"verifies {_SOME}"))
-        atoms = tuple(self._atoms())
-        (session,) = self._need(f"session {_TIME}", "when the session began")
-        letters = self._letters(len(atoms))
-        (until,) = self._need(f"until {_TIME}", "the time up to which the run was looked at")
-        verdicts = "|".join(verdict.value for verdict in Verdict)
-        verdict, decided = self._need(f"verdict ({verdicts}) {_TIME}", "a verdict and its time")
-        return Claim(
-            label, text, atoms, int(session), letters, int(until), Verdict(verdict), int(decided), requirement, verifies
-        )
-
-    def _signals(self) -> Iterator[StatedSignal]:
-        for name, type_, definition in self._all(r"signal (\S+) (\S+) (\{.*\})"):
-            yield StatedSignal(name, type_, self._data(definition))
-
-    def _atoms(self) -> Iterator[StatedAtom]:
-        for (name,) in self._all(f"atom {_SOME}"):
-            (condition,) = self._need(r"is (\{.*\})", "what the atom is")
-            yield StatedAtom(name, self._data(condition))
-
-    def _data(self, text: str) -> Data:
-        """What the last line says in JSON."""
-        try:
-            found: Data = json.loads(text)
-        except (ValueError, RecursionError):
-            self.at -= 1
-            raise _RefusedError("this is not JSON") from None
-        return found
-
-    def _letters(self, atoms: int) -> tuple[Line, ...] | Summed:
-        found = self._take(f"letters {_TIME} sha256 {_HEX}")
-        if found is not None:
-            return Summed(int(found[0]), found[1])
-        lines: list[Line] = []
-        for pattern, most in ((f"at {_TIME}{_LETTER}", 1), (rf"\+{_TIME}{_LETTER}", len(self._lines))):
-            while len(lines) < most and (found := self._take(pattern)) is not None:
-                numbers = tuple(int(each[1:]) for each in found[1].split())
-                if list(numbers) != sorted({*numbers}) or (numbers and numbers[-1] >= atoms):
-                    self.at -= 1
-                    raise _RefusedError(f"not a letter:{found[1]}")
-                lines.append(Line(int(found[0]) + (lines[-1].time if lines else 0), numbers))
-            if not lines:
-                break
-        return tuple(lines)

@@ -6,64 +6,115 @@ same algorithm in Python; `proofs/checker/judge` is that of Coq.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from ltlc.assurance.evidence.document import Claim, Line
-from ltlc.assurance.evidence.parts import NOTHING, Memory, Part, Past, next_part
+from ltlc.assurance.evidence.parts import (
+    NOTHING,
+    Memory,
+    Opened,
+    Part,
+    Past,
+    Tally,
+    counted_parts,
+    next_part,
+    open_part,
+)
 from ltlc.semantics import finite
 from ltlc.semantics.certificate import Certificate
-from ltlc.semantics.certificate_text import Entry
 from ltlc.semantics.durations import Nanoseconds
-from ltlc.semantics.encodings import EPISODE
-from ltlc.semantics.ltl import atoms
-from ltlc.semantics.timed_atoms import Late, News, atoms_within
+from ltlc.semantics.timed_atoms import Clock, Late, News, Occurred, atoms_within, news_of
 from ltlc.semantics.verdicts import Verdict
 from ltlc.semantics.words import Letter
-
-LATEST: Nanoseconds = 3_600_000_000_000_000_000
-"""The last time that is judged, in the year 2084: with any duration added, it is a machine integer to Coq's program."""
 
 
 @dataclass(frozen=True, slots=True)
 class Judging:
-    """What does not change in a run: the certificate, with its past, clocks and news, and when the session began."""
+    """What does not change in a run: the certificate, its past, clocks, counts and news, and when the session began.
+
+    The atom that comes with each of the `scopes` says that it is open.
+    """
 
     certificate: Certificate
     session: Nanoseconds
     past: tuple[Past, ...]
     timers: tuple[Late, ...]
+    counts: tuple[Occurred, ...]
+    scopes: tuple[tuple[str, Clock], ...]
     news: frozenset[str]
 
     def is_one(self, part: Part) -> bool:
         """Whether `part` is known to be one letter. Without time, a letter may come more often than its line says."""
-        return part.single and bool(self.past or self.timers)
+        return part.single and bool(self.past or self.timers or self.counts)
 
 
 class Standing(NamedTuple):
-    """What is known after some lines: whether there were any, and what the past and clocks remember.
+    """What is known after some lines: whether there were any, and what the past, clocks, counts and scopes remember.
 
     And the state of the monitor, its `verdict`, and since when it is that.
     """
 
     has_read: bool = False
     remembers: Memory = NOTHING
+    tallies: tuple[Tally, ...] = ()
+    opened: tuple[Opened, ...] = ()
     state: int = 0
     verdict: Verdict = Verdict.NOT_STARTED
     since: Nanoseconds = 0
 
 
-def prepare(certificate: Certificate, session: Nanoseconds) -> Judging:
-    """How runs in a session that began at `session` are judged by a certificate of the encoding `episode`."""
+def prepare(
+    certificate: Certificate,
+    session: Nanoseconds,
+    counts: Sequence[Occurred] = (),
+    scopes: Sequence[tuple[str, Clock]] = (),
+) -> Judging:
+    """How runs in a session that began at `session` are judged by a certificate of the encoding `episode`.
+
+    It asks for the `counts` as atoms; other atoms say which of the `scopes` are open.
+    """
     within = tuple(atoms_within(certificate.formula))
+    news = (atom for atom in within if isinstance(atom, News))
     return Judging(
         certificate,
         session,
         tuple(atom for atom in within if isinstance(atom, Past)),
         tuple(atom for atom in within if isinstance(atom, Late)),
-        frozenset(atom.name for atom in within if isinstance(atom, News)),
+        tuple(counts),
+        tuple(scopes),
+        frozenset(atom.name for atom in (*news, *(each for count in counts for each in news_of(count.operand)))),
     )
+
+
+def open_scopes(
+    scopes: Sequence[tuple[str, Clock]], part: Part, is_first: bool, before: Sequence[Opened]
+) -> tuple[Opened, ...] | None:
+    """Since when scopes, and those around them, are open at a part; None if its letter does not say which are."""
+    found = tuple(
+        open_part(scope, part, is_first, () if is_first else before[number])[0]
+        for number, (_, scope) in enumerate(scopes)
+    )
+    is_right = all((name in part.letter) == (of[0] is not None) for (name, _), of in zip(scopes, found, strict=True))
+    return found if is_right else None
+
+
+def whole_part(
+    judging: Judging, standing: Standing, part: Part
+) -> tuple[Letter, Memory, tuple[Tally, ...], tuple[Opened, ...]] | None:
+    """The letter of a part with its counts, past and clocks, and what is remembered then.
+
+    None: these are not the same at all of its instants, or it does not say which scopes are open.
+    """
+    is_first = not standing.has_read
+    if (with_counts := counted_parts(judging.counts, is_first, standing.tallies, part)) is None:
+        return None
+    counted_part, tallies = with_counts
+    found = next_part(judging.session, judging.past, judging.timers, is_first, standing.remembers, counted_part)
+    if found is None:
+        return None
+    opened = open_scopes(judging.scopes, part._replace(letter=found[0]), is_first, standing.opened)
+    return None if opened is None else (*found, tallies, opened)
 
 
 def judge_part(judging: Judging, standing: Standing, part: Part) -> Standing | None:
@@ -72,18 +123,17 @@ def judge_part(judging: Judging, standing: Standing, part: Part) -> Standing | N
     Its letter has to be one that the certificate allows; and to lead back to the state that it leads to, so that it
     does not matter how many instants the part has.
     """
-    has_read = standing.has_read
-    found = next_part(judging.session, judging.past, judging.timers, not has_read, standing.remembers, part)
+    found = whole_part(judging, standing, part)
     if found is None or not finite.holds(judging.certificate.assumption, (found[0],)):
         return None
-    letter, remembers = found
+    letter, remembers, tallies, opened = found
     monitor = judging.certificate.monitor
     state = monitor.step(standing.state, letter)
     if not judging.is_one(part) and monitor.step(state, letter) != state:
         return None
     verdict = monitor.verdicts[state]
-    since = standing.since if has_read and verdict is standing.verdict else part.start
-    return Standing(True, remembers, state, verdict, since)
+    since = standing.since if standing.has_read and verdict is standing.verdict else part.start
+    return Standing(True, remembers, tallies, opened, state, verdict, since)
 
 
 def judge_held(judging: Judging, standing: Standing, held: Part, cuts: Sequence[Nanoseconds] = ()) -> Standing | None:
@@ -112,113 +162,3 @@ def judge_line(
     if after is None or time == end:
         return after
     return judge_held(judging, after, Part(letter - judging.news, time + 1, end), cuts)
-
-
-class _RefusedError(Exception):
-    """Why a claim is not what the judge finds."""
-
-
-def refusal(claim: Claim, lines: Iterable[Line], entry: Entry) -> str | None:
-    """Why `claim` is not what follows from `lines`, by a certificate that is accepted; None if it is.
-
-    That the certificate is accepted, and about the property, somebody else has found.
-    """
-    try:
-        _judge(claim, lines, entry)
-    except _RefusedError as refused:
-        return str(refused)
-    return None
-
-
-def _judge(claim: Claim, lines: Iterable[Line], entry: Entry) -> None:
-    if entry.encoding != EPISODE.name:
-        raise _RefusedError("its encoding is not that of the language")
-    judging = prepare(entry.certificate, claim.session)
-    names = _names(claim, judging)
-    letters: dict[tuple[int, ...], Letter] = {}
-    standing, before = Standing(), None
-    for time, numbers in lines:
-        if before is not None:
-            standing = _judged(judging, standing, before, time)
-        letter = letters.get(numbers)
-        if letter is None:
-            letter = letters[numbers] = frozenset(names[number] for number in numbers)
-        before = time, letter
-    if claim.decided != claim.until:
-        raise _RefusedError("the run was not looked at up to the time of its verdict")
-    if (claim.verdict is Verdict.NOT_STARTED) != (before is None):
-        raise _RefusedError("it has no letters" if before is None else "it has letters, so it has started")
-    if before is None:
-        return
-    standing = _judged(judging, standing, before, claim.until)
-    decided = standing.since if standing.verdict.is_permanent else claim.until
-    if (standing.verdict, decided) != (claim.verdict, claim.decided):
-        stated, found = _from(claim.verdict, claim.decided), _from(standing.verdict, decided)
-        raise _RefusedError(f"the verdict is {found}, not {stated}")
-
-
-def _from(verdict: Verdict, time: Nanoseconds) -> str:
-    return f"{verdict.value} from {time} on"
-
-
-def _judged(judging: Judging, standing: Standing, line: tuple[Nanoseconds, Letter], end: Nanoseconds) -> Standing:
-    """What is known after a line; where its letter has to be cut is looked for, and need not be right."""
-    time, letter = line
-    if time > LATEST or end > LATEST:
-        raise _RefusedError("times after the year 2084 are not judged")
-    if end < time:
-        raise _RefusedError("times go back")
-    if (after := judge_line(judging, standing, line, end)) is not None:
-        return after
-    alone = Part(letter, time, time, single=True)
-    if (first := judge_part(judging, standing, alone)) is None:
-        raise _RefusedError(_reason(judging, standing, alone))
-    cuts = list(_cuts(judging, first, Part(letter - judging.news, time + 1, end)))
-    if (after := judge_line(judging, standing, line, end, cuts)) is None:
-        raise _RefusedError("it is not judged")
-    return after
-
-
-def _cuts(judging: Judging, standing: Standing, held: Part) -> Iterator[Nanoseconds]:
-    """The last instants before the answer of a clock changes while a letter is held."""
-    while judge_part(judging, standing, held) is None:
-        low, high = held.start, held.end
-        while high - low > 1:
-            middle = (low + high) // 2
-            if judge_part(judging, standing, held._replace(end=middle)) is None:
-                high = middle
-            else:
-                low = middle
-        part = held._replace(end=low)
-        after = judge_part(judging, standing, part)
-        if after is None or low == held.end:
-            raise _RefusedError(_reason(judging, standing, part))
-        yield low
-        standing, held = after, held._replace(start=low + 1)
-
-
-def _reason(judging: Judging, standing: Standing, part: Part) -> str:
-    """Why a part is not judged."""
-    found = next_part(judging.session, judging.past, judging.timers, not standing.has_read, standing.remembers, part)
-    if found is None:
-        return "what 'previously' asks depends on steps that have no line"
-    if not finite.holds(judging.certificate.assumption, (found[0],)):
-        return "the certificate assumes that there is no such letter"
-    return "the verdict depends on how often this letter comes"
-
-
-def _names(claim: Claim, judging: Judging) -> list[str]:
-    """The names of the atoms of a claim: all that the certificate does not define, and none that it does."""
-    certificate = judging.certificate
-    defined = {each.name for each in (*judging.past, *judging.timers)}
-    within = (atom.name for atom in atoms_within(certificate.formula))
-    asked = {*certificate.monitor.atoms, *atoms(certificate.assumption), *within}
-    names = [name for name, _ in claim.atoms]
-    for number, name in enumerate(names):
-        if name in defined:
-            raise _RefusedError(f"'{name}' follows from the other atoms")
-        if name in names[:number]:
-            raise _RefusedError(f"'{name}' is there twice")
-    if missing := sorted(asked - defined - {*names}):
-        raise _RefusedError(f"'{missing[0]}' is missing")
-    return names

@@ -21,6 +21,7 @@ from ltlc.semantics.timed_atoms import (
     Historically,
     LastTrigger,
     Late,
+    Occurred,
     Once,
     Previously,
     Since,
@@ -40,6 +41,9 @@ Opened = tuple[Nanoseconds | None, ...]
 
 ClockState = tuple[Nanoseconds | None, Opened]
 """What a clock remembers: from when it counts, and its scopes."""
+
+Tally = tuple[tuple[Nanoseconds, ...], bool, Nanoseconds]
+"""Of a count the times at which it occurred last, whether that is held, and the time of the first instant."""
 
 Memory = tuple[tuple[Kept, ...], tuple[ClockState, ...]]
 """What all operators of the past and all clocks remember."""
@@ -102,6 +106,38 @@ def _counting(bound: Nanoseconds | None, kept: Kept, part: Part) -> tuple[bool, 
     if kept is None:
         return False, False, kept
     return _within(bound, kept[1], part.start), _within(bound, kept[1], part.end), kept
+
+
+def count_part(count: Occurred, is_first: bool, before: Tally | None, part: Part) -> tuple[bool, bool, Tally] | None:
+    """Whether a count is reached at the first and at the last instant of a part, and what is remembered then.
+
+    None: that depends on how many instants the part has.
+    """
+    old, held, first = before if before is not None and not is_first else ((), False, part.start)
+    here = part.has(count.operand)
+    if here and not count.begins and not part.single:
+        return None
+    now = (*old, part.start)[-count.times :] if here and not (count.begins and held) else old
+
+    def is_reached(time: Nanoseconds) -> bool:
+        is_presumed = count.presumed and count.within is not None and time <= first + count.within
+        return is_presumed or (len(now) == count.times and _within(count.within, now[0], time))
+
+    return is_reached(part.start), is_reached(part.end), (now, here, first)
+
+
+def counted_parts(
+    counts: Sequence[Occurred], is_first: bool, before: Sequence[Tally], part: Part
+) -> tuple[Part, tuple[Tally, ...]] | None:
+    """A part with its counts, and what is remembered then; None: they are not the same at all of its instants."""
+    tallies: list[Tally] = []
+    for number, count in enumerate(counts):
+        found = count_part(count, is_first, None if is_first else before[number], part)
+        if found is None or found[0] != found[1]:
+            return None
+        part = part._replace(letter=part.letter | {count.name} if found[0] else part.letter - {count.name})
+        tallies.append(found[2])
+    return part, tuple(tallies)
 
 
 def open_part(scope: Clock, part: Part, is_first: bool, before: Opened) -> tuple[Opened, bool]:

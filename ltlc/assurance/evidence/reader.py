@@ -9,7 +9,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from ltlc.assurance.evidence.document import Claim, Document, UnreadableEvidence, parsed, printed
+from ltlc.assurance.evidence.document import Claim, Document, printed
+from ltlc.assurance.evidence.parsing import UnreadableEvidence, parsed
 
 READER = Path(__file__).with_name("recorded.py")
 REFUSED, NOT_COVERED = "REFUSED: ", "NOT COVERED: "

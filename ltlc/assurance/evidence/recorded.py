@@ -38,6 +38,8 @@ EXACT = 2**53
 """Up to here integers are doubles."""
 MOST_TICKS = 10**8
 MOST_COMBINATIONS = 10**6
+MOST_ROUNDS = 100
+"""So often it is looked anew which steps there are, as that depends on values at openings."""
 TIMES = ("time", "__time", "timestamp")
 """Heads of a column of times."""
 
@@ -81,6 +83,12 @@ certificates sha256 {HEX}
 )?(from {TIME}
 )?(to {TIME}
 )?"""
+JUDGED = rf"""(?:letters {TIME} sha256 {HEX}
+|at {TIME}{LETTER}
+(?:\+{TIME}{LETTER}
+)*+)?until {TIME}
+verdict [a-z_]+ {TIME}
+"""
 CLAIM = rf"""not-covered .+: .+
 |property .+
 text .+
@@ -88,13 +96,14 @@ text .+
 )?(verifies .+
 )*(atom .+
 is {{.*}}
-)*session {TIME}
-(letters {TIME} sha256 {HEX}
-|at {TIME}{LETTER}
-(\+{TIME}{LETTER}
-)*+)?until {TIME}
-verdict [a-z_]+ {TIME}
-"""
+)*(count .+
+of .+
+)*(scope {TIME}(?: {TIME}-(?:{TIME})?)*
+)*(instances a[0-9]+
+)?(key {{.*}}
+)?session {TIME}
+(slice .+
+{JUDGED})*{JUDGED}"""
 
 
 class Section:
@@ -106,10 +115,10 @@ class Section:
     def __init__(self, text: str, form: str, parts: dict[str, Json]) -> None:
         if not re.fullmatch(form, text):
             raise ValueError(f"what begins with `{text.partition(chr(10))[0][:80]}` is not written as it should be")
-        self.text = text
+        self.text, self.parts = text, parts
         self.said: dict[str, list[str]] = {}
-        self.lines = ""
-        """Those that were computed, if they are as stated."""
+        self.lines: list[str] = []
+        """Those that were computed in place of digests, if they are as stated."""
         for row in text.split("\n"):
             word, _, rest = row.replace("+", "+ ", 1).partition(" ") if row[:1] == "+" else row.partition(" ")
             self.said.setdefault(word, []).append(rest)
@@ -118,6 +127,11 @@ class Section:
             json.loads(each, object_hook=lambda x: parts.setdefault(json.dumps(x), x)) for each in texts
         ]
         """What the atoms are, or the signals of a table."""
+        self.key: list[Json] = [
+            json.loads(each, object_hook=lambda x: parts.setdefault(json.dumps(x), x))
+            for each in self.said.get("key", [])
+        ]
+        """The field that has ids, if there are slices."""
 
     def one(self, word: str) -> str:
         """What follows a word that is there once, or not."""
@@ -133,8 +147,18 @@ class Section:
 
     @property
     def filled(self) -> str:
-        """Its text, with the lines that were computed in place of their digest."""
-        return re.sub("^letters .*\n", self.lines, self.text, flags=re.M) if self.lines else self.text
+        """Its text, with the lines that were computed in place of their digests."""
+        found, computed = re.compile("^letters .*\n", re.M), iter(self.lines)
+        is_computed = len(found.findall(self.text)) == len(self.lines)
+        return found.sub(lambda _: next(computed), self.text) if is_computed else self.text
+
+    @property
+    def slices(self) -> dict[str, Section]:
+        """What it says of each slice, as of a property of its own; by the ids."""
+        before, *blocks = re.split("^slice ", self.text, flags=re.M)
+        before = re.sub("^key .*\n", "", before, flags=re.M)
+        pairs = (re.match(f"(.+)\n({JUDGED})", block) for block in blocks)
+        return {pair[1]: Section(before + pair[2], CLAIM, self.parts) for pair in pairs if pair}
 
 
 class Document:
@@ -179,14 +203,15 @@ class Recording:
     """What a document needs of a recording: the `times` of its messages, and their places in this list.
 
     `topics` has the places of the messages on each topic; `samples`, by the identity of what is read, those of the
-    messages that have it, and its values. The run begins at `first`, and ends at `last`; `kept` is what was computed.
+    messages that have it, and its values. The run begins at `first`, and ends at `last`; of a slice, no message before
+    the place `begins` is a step. `kept` is what was computed.
     """
 
     def __init__(self) -> None:
         self.times: Array = []
         self.topics: dict[str, Array] = {}
         self.samples: dict[int, tuple[Array, Array]] = {}
-        self.first = self.last = 0
+        self.first = self.last = self.begins = 0
         self.kept: dict[Any, Values] = {}
 
     def settle(self, head: Section, span: tuple[int, int] | None) -> None:
@@ -252,7 +277,7 @@ def value_at(value: Any, path: list[Json], around: Any = None) -> Any:
             case ["parallel", names, name]:
                 pairs = zip(value, getattr(around, names), strict=False)
                 value = next((each for each, other in pairs if other == name), None)
-            case ["each"]:
+            case ["each"] | ["own"]:
                 return [value_at(each, path[depth + 1 :], value) for each in value]
             case ["bytes"]:
                 text = bytes(value).hex()
@@ -270,7 +295,7 @@ def read(path: Path, document: Document) -> Recording:
         with covered("it cannot be read as a table"):
             return read_table(path, document.head)
     with covered("what it reads is not to be found"):
-        atoms = [each.data for each in document.claims]
+        atoms = [each.data + each.key for each in document.claims]
         wanted: dict[str, dict[int, Json]] = {name: {} for name in topics_of(atoms)}
         for part in parts(atoms):
             if "path" in part:
@@ -709,6 +734,8 @@ class Values:
             self.seen = self.times.searchsorted(recorded.times)
         self.count = len(self.times)
         self.found: dict[int, Series] = {}
+        self.taken: dict[int, Array] = {}
+        """Of each scope, at which instant the value at its opening was taken."""
 
     def heard(self, topics: Iterable[str], *, now: bool = False) -> Array:
         """Where there is news of some topics; with `now`, at this very time."""
@@ -767,6 +794,9 @@ class Values:
                 return Series(self.heard(topics), fresh=self.heard(topics))
             case {"message": topics}:
                 return Series(self.heard(topics, now=True), fresh=self.heard(topics))
+            case {"opening": of, "scope": number}:
+                everywhere = np.broadcast_to(value(of).now, self.count)
+                return Series(everywhere[self.taken[number]], value(of).known, value(of).fresh)
             case {"instead": constant, "of": of}:
                 first = [self.heard([topic]) for topic in x.get("news", [])]
                 is_late = reduce(np.logical_and, first) & ~value(of).known if first else NO
@@ -898,6 +928,34 @@ class Run(NamedTuple):
         return len(times), f"at {times[0]}{text[2:]}" if text else ""
 
 
+class Scope:
+    """A scope of a property: its number, and from which steps up to which it is said to be open."""
+
+    def __init__(self, text: str) -> None:
+        self.text, [number, *spans] = text, text.split(" ")
+        self.number, pairs = int(number), [span.split("-") for span in spans]
+        self.spans = [slice(int(first), int(end) if end else None) for first, end in pairs]
+
+    def open(self, count: int) -> Array:
+        """At which steps it is open."""
+        found = np.zeros(count, bool)
+        for span in self.spans:
+            found[span] = True
+        return found
+
+    def taken(self, is_step: Array) -> Array:
+        """For each instant, at which one the value at the opening was taken: at itself unless it was open before."""
+        before = np.append(False, self.open(int(np.count_nonzero(is_step))))[np.cumsum(is_step) - is_step]
+        return np.maximum.accumulate(np.where(before, 0, np.arange(len(is_step))))
+
+    def check(self, count: int) -> None:
+        """Raise Refused if of so many steps it is not said as it should be."""
+        turns = np.flatnonzero(np.diff(self.open(count).astype(np.int8), prepend=0)).tolist()
+        spans = [f" {first}-{end}" for first, end in itertools.zip_longest(turns[::2], turns[1::2], fillvalue="")]
+        if self.text != "".join([str(self.number), *spans]):
+            raise Refused(f"from which steps on scope {self.number} is open is not written as it should be")
+
+
 def run_of(claim: Section, recorded: Recording, head: Section, *, apart: bool) -> Run:
     """The run of a property. With `apart`, what begins with the session has an instant of its own there."""
     with covered("its atoms cannot be computed"), np.errstate(all="ignore"):
@@ -906,11 +964,25 @@ def run_of(claim: Section, recorded: Recording, head: Section, *, apart: bool) -
         key = frozenset(topics_of(atoms)), begins
         if key not in recorded.kept:
             recorded.kept[key] = Values(recorded, key[0], rate, recorded.first if begins else None)
-        values = recorded.kept[key]
-        every, letters = combined(YES, *map(values.value, atoms)), np.zeros(values.count, np.int64)
-        is_step = np.broadcast_to(every.fresh | values.is_ticks, values.count).copy()
-        is_step[:1] |= begins
-        is_step &= every.known & ~every.wrong
+        values, scopes = recorded.kept[key], [Scope(each) for each in claim.said.get("scope", [])]
+        is_step = np.zeros(values.count, bool)
+        for _ in range(MOST_ROUNDS):
+            if scopes:
+                values, before = Values(recorded, key[0], rate, recorded.first if begins else None), is_step
+                values.taken = {scope.number: scope.taken(before) for scope in scopes}
+            every = combined(YES, *map(values.value, atoms))
+            is_step = np.broadcast_to(every.fresh | values.is_ticks, values.count).copy()
+            is_step[:1] |= begins
+            is_step &= every.known & ~every.wrong
+            is_step[: values.seen[recorded.begins] if recorded.begins else 0] = False
+            if not scopes or np.array_equal(is_step, before):
+                break
+        else:
+            raise NotCovered("which steps there are depends on values at openings")
+        letters = np.zeros(values.count, np.int64)
+        for n, scope in enumerate(scopes, len(atoms)):
+            scope.check(int(values.times[is_step].searchsorted(claim.time("until") or 0, "right")))
+            letters[is_step] |= scope.open(int(np.count_nonzero(is_step))).astype(np.int64) << n
         news, messages = 0, {}
         for n, atom in enumerate(atoms):
             letters |= values.value(atom).now.astype(np.int64) << n
@@ -995,8 +1067,87 @@ def end_of(document: Document, recorded: Recording) -> int:
     return min([recorded.last, *(int(run.times[0]) + timeout for run in runs if len(run.times))])
 
 
+def slices_of(claim: Section, recorded: Recording) -> dict[str, Recording]:
+    """The slices of all ids, as JSON, in the order of their first messages."""
+    [key] = claim.key
+    own = [each for each in parts(claim.data) if "path" in each and ["own"] in each["path"]]
+    places, values = recorded.samples[id(key)]
+    having = [dict(zip(*map(list, recorded.samples[id(each)]), strict=True)) for each in own]
+    found: dict[str, list[tuple[int, int]]] = {}
+    for place, ids in zip(places.tolist(), values, strict=True):
+        is_array = isinstance(ids, np.ndarray)
+        count = min([len(ids), *(len(each.get(place, [])) for each in having)]) if is_array else 1
+        for at, value in enumerate(ids[:count] if is_array else [ids]):
+            if (one := id_of(value)) is not None:
+                found.setdefault(json.dumps(one), []).append((place, at))
+    return {one: slice_of(recorded, key["topic"], messages, claim) for one, messages in found.items()}
+
+
+def slice_of(recorded: Recording, topic: str, messages: list[tuple[int, int]], claim: Section) -> Recording:
+    """A recording with some messages on a topic, of whose arrays each has one element; and all on other topics."""
+    found = Recording()
+    others = np.setdiff1d(np.arange(len(recorded.times)), recorded.topics[topic])
+    numbers, elements = (np.array(each, np.int64) for each in zip(*messages, strict=True))
+    old = np.append(others, numbers)
+    order = old.argsort(kind="stable")
+    new = np.empty(len(order), np.int64)
+    new[order] = np.arange(len(order))
+    ours = new[len(others) :]
+    found.times, found.first, found.last, found.begins = (
+        recorded.times[old[order]],
+        recorded.first,
+        recorded.last,
+        ours[0],
+    )
+    for name, places in recorded.topics.items():
+        found.topics[name] = ours if name == topic else new[others.searchsorted(places)]
+    for field in (part for part in parts(claim.data) if "path" in part):
+        places, values = recorded.samples[id(field)]
+        if field["topic"] != topic:
+            found.samples[id(field)] = new[others.searchsorted(places)], values
+            continue
+        value_of = dict(zip(places.tolist(), values, strict=True))
+        having = [n for n, place in enumerate(numbers.tolist()) if place in value_of]
+        given = [value_of[numbers[n]] for n in having]
+        is_own = ["own"] in field["path"]
+        some = [each[elements[n]] for n, each in zip(having, given, strict=True)] if is_own else given
+        found.samples[id(field)] = ours[having], column(some)
+    return found
+
+
+def id_of(value: Any) -> Any:
+    """A value as an id: whole numbers are integers, and NaN is none."""
+    value = value.item() if isinstance(value, np.generic) else value
+    if isinstance(value, float) and value.is_integer():
+        return int(value)
+    return None if value != value else value
+
+
+def check_slices(claim: Section, recorded: Recording, head: Section, ends: int) -> str:
+    """Compute what is claimed of each slice, and of all of them; how many there are."""
+    if head.said.keys() & {"rate", "timeout", "signal"}:
+        raise NotCovered("ids at ticks, with a timeout, or in tables")
+    with covered("its ids cannot be computed"):
+        found = slices_of(claim, recorded)
+    stated = claim.slices
+    if claim.said.get("slice", []) != [*found]:
+        raise Refused(f"the ids are {', '.join(found)[:200]}")
+    for one, part in stated.items():
+        try:
+            check_claim(part, found[one], head, ends)
+        except Refused as error:
+            raise Refused(f"slice {one}: {error}") from None
+        claim.lines += part.lines
+    [(until, verdict, decided)] = re.findall(r"^until (.+)\nverdict (.+) (.+)\n\Z", claim.text, re.M)
+    if until != decided or (verdict != "violated" and until != str(ends)):
+        raise Refused(f"the run ends at {ends}")
+    return f"ids: {len(found)}"
+
+
 def check_claim(claim: Section, recorded: Recording, head: Section, ends: int) -> str:
     """Compute what is claimed of a run that ends at `ends` at the latest; how many instants and lines it has."""
+    if claim.key:
+        return check_slices(claim, recorded, head, ends)
     verdict, _, decided = claim.one("verdict").partition(" ")
     until = int(claim.one("until"))
     if decided != str(until) or (until > ends if verdict in ("violated", "satisfied") else until != ends):
@@ -1013,7 +1164,7 @@ def check_claim(claim: Section, recorded: Recording, head: Section, ends: int) -
         if (verdict == "not_started") != (count == 0):
             wrong.append("it has started" if count else "it has not started")
         if not wrong:
-            claim.lines = lines
+            claim.lines = [lines] * ("letters" in claim.said)
             return f"instants: {len(run.times)}, lines: {count}"
         problems += wrong
     raise Refused(problems[0])

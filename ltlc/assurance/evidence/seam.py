@@ -9,7 +9,15 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import zip_longest
 
-from ltlc.assurance.evidence.conditions import NotCoveredError, stated_atoms, stated_signals
+from ltlc.assurance.evidence.conditions import (
+    NotCoveredError,
+    numbered_scopes,
+    opening_atom,
+    stated_atoms,
+    stated_counts,
+    stated_key,
+    stated_signals,
+)
 from ltlc.assurance.evidence.document import Claim, Document, condition_text
 from ltlc.specification.specification import Specification
 
@@ -53,4 +61,12 @@ def difference(claim: Claim, specification: Specification) -> str | None:
     for (name, condition), (_, right) in zip(claim.atoms, stated, strict=True):
         if condition_text(condition) != condition_text(right):
             return f"`{name}` is {condition_text(right)}"
+    if claim.opens != opening_atom(of):
+        return "instances are opened by something else"
+    if claim.key != stated_key(of):
+        return "ids come from somewhere else"
+    if claim.counts != stated_counts(of):
+        return "it counts something else"
+    if [scope.number for scope in claim.scopes] != [*numbered_scopes(of).values()]:
+        return "it takes values at the opening of other scopes"
     return None

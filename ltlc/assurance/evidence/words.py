@@ -8,8 +8,10 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator, Mapping, Sequence
 
-from ltlc.assurance.evidence.document import Head
-from ltlc.semantics.durations import seconds_text
+from ltlc.assurance.evidence.counting import counted
+from ltlc.assurance.evidence.document import Claim, Head
+from ltlc.semantics.durations import duration_text, seconds_text
+from ltlc.semantics.ltl import to_text
 
 Json = object
 
@@ -36,6 +38,27 @@ def settings_in_words(head: Head) -> Iterator[str]:
         yield f"only from {seconds_text(head.since)} s on"
     if head.until is not None:
         yield f"only up to {seconds_text(head.until)} s"
+
+
+def atoms_in_words(claim: Claim) -> Iterator[tuple[str, str, str]]:
+    """What letters are made of, and what is counted: how it is called in them, how it is written, and what it is."""
+    names = [f"a{number}" for number in range(len(claim.atoms) + len(claim.scopes))]
+    for number, (name, atom) in enumerate(zip(names, claim.atoms, strict=False)):
+        opens = "; this opens an instance" if number == claim.opens else ""
+        yield name, atom.name, f"{in_words(atom.condition)}{opens}"
+    for name, scope in zip(names[len(claim.atoms) :], claim.scopes, strict=True):
+        spans = (
+            f"from step {first} {'on' if end is None else f'up to, not including, {end}'}" for first, end in scope.open
+        )
+        yield name, f"scope {scope.number} is open", ", ".join(spans) or "never"
+    if claim.key is not None:
+        yield "", "ids", _value(claim.key)
+    for stated in claim.counts:
+        of = counted(stated, names)
+        within = "so far" if of.within is None else f"in the last {duration_text(of.within)}"
+        how = "has begun to hold" if of.begins else "has occurred"
+        presumed = f", or no more than {duration_text(of.within)} have passed" if of.presumed and of.within else ""
+        yield "", stated.name, f"{to_text(of.operand)} {how} {of.times} times or more {within}{presumed}"
 
 
 def in_words(condition: Json) -> str:
@@ -78,6 +101,8 @@ def _value(of: Json) -> str:
         case {"instead": value, "of": samples, **rest} if rest.keys() <= {"news"}:
             news = f", or without a message on {' or '.join(map(str, _list(rest['news'])))}" if rest else ""
             return f"[{_value(samples)}; {_value(value)} before it has one{news}]"
+        case {"opening": value, "scope": number, **rest} if not rest:
+            return f"[{_value(value)} when scope {_value(number)} opened]"
         case {"slice": [first, last], "of": array, **rest} if not rest:
             said = f"from {_end(first, 'the first')} up to, not including, {_end(last, 'the end')}"
             return f"[the elements of {_value(array)} {said}]"
@@ -117,6 +142,8 @@ def _path(steps: Sequence[Json]) -> str:
                 text += f"[{kind} {json.dumps(key)} == {json.dumps(value)}]"
             case ["each"]:
                 text += "[]"
+            case ["own"]:
+                text += "[of the id]"
             case _:
                 text += f"[{json.dumps(step)}]"
     return text.removeprefix(".")

@@ -7,8 +7,9 @@ from pathlib import Path
 
 from ltlc.assurance.afresh.files import UnusableError, text_at
 from ltlc.assurance.evidence.checked import checked
-from ltlc.assurance.evidence.document import Claim, Document, NotCovered, UnreadableEvidence, parsed_all
+from ltlc.assurance.evidence.document import Claim, Document, NotCovered
 from ltlc.assurance.evidence.outcomes import Check, CheckedClaim
+from ltlc.assurance.evidence.parsing import UnreadableEvidence, parsed_all
 from ltlc.assurance.evidence.reader import NotReadError, Read, read, recordings_of
 from ltlc.assurance.evidence.seam import differences
 from ltlc.assurance.evidence.words import settings_in_words
@@ -21,11 +22,12 @@ from ltlc.specification.specification import Specification
 
 MEANING = """\
 judge: the verdict, and the time from which it is right, follow from the letters by the certificate of the property:
-  theorem evidence_of_lines in proofs/Evidence.v. It does not see the recording. Trusted: the statement of the theorem;
-  which letters exist (`assuming`, above); judge.py, the judge extracted from Coq in Python. To run that one itself:
-  proofs/checker/judge CERTIFICATES EVIDENCE. That no verdict comes late is what `certified, exactly` says.
+  theorem evidence_of_lines in proofs/Evidence.v; of `each new`, evidence_of_instances in proofs/Instances.v. It does
+  not see the recording. Trusted: the statements of the theorems; which letters exist (`assuming`, above); judge.py, the
+  judge extracted from Coq in Python. To run that one itself: proofs/checker/judge CERTIFICATES EVIDENCE. That no
+  verdict comes late is what `certified, exactly` says.
 recorded: the recording has these letters, if each atom is what it is stated to be as data. Trusted: recorded.py, which
-  shares nothing with ltlc; numpy; rosbags.
+  shares nothing with ltlc; numpy; rosbags. It takes values at openings where the judge finds that scopes opened.
 specification: the properties, their requirements, and what each atom is, are those of the specification. Trusted: the
   front end of ltlc.
 Not checked: that a property says what its requirement means, that the recording shows what happened, and why nothing

@@ -8,7 +8,7 @@ from typing import Any
 from ltlc.assurance.evidence.document import Claim, Document, NotCovered, Summed
 from ltlc.assurance.evidence.outcomes import Check, CheckedClaim
 from ltlc.assurance.evidence.statement import Result, State
-from ltlc.assurance.evidence.words import in_words, settings_in_words
+from ltlc.assurance.evidence.words import atoms_in_words, settings_in_words
 from ltlc.base.provenance import FileDigest
 from ltlc.monitoring.documents import document
 from ltlc.runtime.times import seconds_text
@@ -85,18 +85,22 @@ def _recording(
 
 
 def _claim(claim: Claim, found: CheckedClaim) -> dict[str, Any]:
-    lines = claim.letters.count if isinstance(claim.letters, Summed) else len(claim.letters)
-    summed = ", as their SHA-256" if isinstance(claim.letters, Summed) else ""
     state = "refused" if found.is_refused else "accepted" if found.is_accepted else "unchecked"
     return {
         "claim": claim,
         "says": f"{_CLAIMED[state]}{SAYS[claim.verdict]}, at {seconds_text(claim.decided)} s of the recording's clock",
         "colour": claim.verdict.value if state == "accepted" else state,
-        "atoms": [(f"a{number}", each.name, in_words(each.condition)) for number, each in enumerate(claim.atoms)],
-        "lines": f"{lines} {'line' if lines == 1 else 'lines'} of letters{summed}",
+        "atoms": list(atoms_in_words(claim)),
+        "lines": _lines(claim) if claim.key is None else f"letters of {len(claim.slices)} ids, each with its verdict",
         "state": state,
         "checks": [_check(each) for each in found.checks],
     }
+
+
+def _lines(claim: Claim) -> str:
+    is_summed = isinstance(claim.letters, Summed)
+    lines = claim.letters.count if isinstance(claim.letters, Summed) else len(claim.letters)
+    return f"{lines} {'line' if lines == 1 else 'lines'} of letters{', as their SHA-256' * is_summed}"
 
 
 def _check(check: Check) -> dict[str, str]:

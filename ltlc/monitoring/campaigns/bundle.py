@@ -9,7 +9,8 @@ from os import SEEK_END
 from pathlib import Path
 from typing import Self
 
-from ltlc.assurance.evidence.document import HEADER, UnreadableEvidence, parsed, printed
+from ltlc.assurance.evidence.document import HEADER, printed
+from ltlc.assurance.evidence.parsing import UnreadableEvidence, parsed
 from ltlc.base.provenance import FileDigest
 from ltlc.monitoring.campaigns.places import Location, is_address
 from ltlc.monitoring.judging.evidence import Digests, Evidence

@@ -19,7 +19,7 @@ from ltlc.monitoring.columns.prepared import Prepared
 from ltlc.monitoring.columns.series import Steps, UnsupportedError
 from ltlc.monitoring.columns.tables import Tables
 from ltlc.monitoring.columns.values import not_numbers, predicate, value
-from ltlc.monitoring.later import is_followed
+from ltlc.monitoring.later import is_followed, letters_of
 from ltlc.runtime.courses import Course
 from ltlc.runtime.episodes import Episodes
 from ltlc.runtime.properties import Moment, Opening, Scope
@@ -68,6 +68,8 @@ def stretch(track: Track, of: Prepared, steps: Steps) -> Stretch:
     is_judged = is_followed(track)
     ages = is_judged and has_ages(track)
     if of.openings:
+        if letters_of(track) is not None:
+            raise UnsupportedError("values at openings, of which there is to be evidence")
         return Stretch(steps, None, (), KeptLetters(track, of, steps))
     found = tuple([bits_of(atom, steps) for atom in of.atoms]) if is_judged else ()
     counted = of.counts if track.decided_at is None else ()

@@ -3,11 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path, PurePath
 from threading import Thread
+from typing import NamedTuple
 
-from ltlc.assurance.evidence.conditions import NotCoveredError, stated_atoms, stated_signals
+from ltlc.assurance.evidence.conditions import (
+    NotCoveredError,
+    opening_atom,
+    stated_atoms,
+    stated_counts,
+    stated_key,
+    stated_signals,
+    whole_run,
+)
 from ltlc.assurance.evidence.definitions import digests
 from ltlc.assurance.evidence.document import Claim, Document, Head, NotCovered, StatedAtom, StatedSignal, digest
 from ltlc.base.codes import diagnostic
@@ -24,11 +33,19 @@ from ltlc.inputs.recordings.digests import files_of
 from ltlc.inputs.recordings.lacks import signals_of
 from ltlc.inputs.recordings.reading import ReadOptions, Stamp
 from ltlc.monitoring.judging.part import Part
+from ltlc.monitoring.judging.whole_runs import WholeRuns
 from ltlc.monitoring.later import JudgedTrack
 from ltlc.monitoring.letters import Letters
 from ltlc.runtime.session import Session
 from ltlc.semantics.durations import Nanoseconds
-from ltlc.specification.specification import PropertySpecification, Specification, fields
+from ltlc.specification.specification import Instances, PropertySpecification, Specification, fields
+
+
+class Kept(NamedTuple):
+    """What was kept of a run: letters by the labels of properties, and those of `whole` runs."""
+
+    letters: Mapping[str, Letters]
+    whole: WholeRuns | None
 
 
 @dataclass(frozen=True)
@@ -49,19 +66,38 @@ class Evidence:
     timeout: Nanoseconds | None
 
     def letters(self, label: str) -> Letters | None:
-        """Where the letters of a property are kept in a run; None if nothing is claimed of it."""
+        """Where the letters of a property are kept in a run; None if nothing is claimed of it, or of its instances."""
         [of] = (each for each in self.properties if each.label == label)
-        return None if isinstance(self.stated[label], str) else Letters(of, self.rate is not None)
+        return None if isinstance(self.stated[label], str) or of.slicing is not None else self.kept(of)
+
+    def kept(self, of: PropertySpecification) -> Letters:
+        """Where the letters of the run of a property are kept."""
+        return Letters(of, self.rate is not None)
+
+    def whole_runs(self, compiled: Iterable[Compiled]) -> list[Compiled]:
+        """Those of the properties that are judged for ids or instances, to have the letters of all of them."""
+        covered = [each for each in compiled if not isinstance(self.stated[each.specification.label], str)]
+        return [
+            replace(each, specification=whole_run(of, by)) if isinstance(by, Instances) else each
+            for each in covered
+            if (by := (of := each.specification).slicing) is not None
+        ]
 
     def digests(self, path: Path) -> Digests:
         """Those of the files of a recording, which are computed while it is judged."""
         return Digests(path)
 
     def document(
-        self, session: Session, part: Part, recording: Recording, reading: ReadOptions, files: Iterable[FileDigest]
+        self,
+        session: Session,
+        kept: Kept,
+        part: Part,
+        recording: Recording,
+        reading: ReadOptions,
+        files: Iterable[FileDigest],
     ) -> Document:
         """The evidence of a run that has been judged, of a `part` of a recording with these `files`."""
-        return _Judged(session, part, recording, reading).document(self, files)
+        return _Judged(session, kept, part, recording, reading).document(self, files)
 
     def not_covered(self, document: Document, source: Source) -> Iterator[Diagnostic]:
         """A note for each property that `document` claims nothing of; `source` is the specification."""
@@ -133,6 +169,7 @@ class _Judged:
     """A run that has been judged, of a `part` of a recording, read with these options."""
 
     session: Session
+    kept: Kept
     part: Part
     recording: Recording
     reading: ReadOptions
@@ -171,32 +208,57 @@ class _Judged:
         if isinstance(stated, str):
             return NotCovered(of.label, stated)
         assert isinstance(track, JudgedTrack)
-        letters, began = track.letters, self.session.began
-        assert letters is not None
+        began = self.session.began
         if began is None or self.session.time is None:
             return NotCovered(of.label, "the recording has no messages")
         if unread := self._unread(evidence, of):
             return NotCovered(of.label, unread)
-        if letters.are_ages_apart:
-            return NotCovered(of.label, "its ages count from different messages before its first step")
-        if min(began, letters.first or 0) < 0:
+        if track.slices is not None and track.slices.left_out:
+            return NotCovered(of.label, "messages were ignored because of its limit")
+        if began < 0:
             return NotCovered(of.label, "the recording has times before 0")
-        end = self.session.time if self.part.until is None else self.part.until
-        decided = track.decided_at
-        until = min(end, self.session.end) if decided is None else decided.time
+        end = min(self.session.time if self.part.until is None else self.part.until, self.session.end)
+        until = end if track.decided_at is None else track.decided_at.time
         requirement = of.requirement
-        return Claim(
+        claim = Claim(
             of.label,
             of.text,
             stated,
-            began if letters.session is None else letters.session,
-            letters.lines,
+            began,
+            (),
             until,
             track.verdict,
             until,
             None if requirement is None else requirement.id,
             () if requirement is None else tuple(requirement.attributes.get("verifies", ())),
+            stated_counts(of),
+            opens=opening_atom(of),
+            key=stated_key(of),
         )
+        return self._with_letters(claim) if claim.key is None else self._with_slices(claim, evidence, end)
+
+    def _with_letters(self, claim: Claim) -> Claim | NotCovered:
+        letters = self.kept.letters[claim.label]
+        if letters.are_ages_apart:
+            return NotCovered(claim.label, "its ages count from different messages before its first step")
+        if (letters.first or 0) < 0:
+            return NotCovered(claim.label, "the recording has times before 0")
+        if isinstance(scopes := letters.scopes(claim.until), str):
+            return NotCovered(claim.label, scopes)
+        session = claim.session if letters.session is None else letters.session
+        return replace(claim, session=session, letters=letters.lines, scopes=scopes)
+
+    def _with_slices(self, claim: Claim, evidence: Evidence, end: Nanoseconds) -> Claim | NotCovered:
+        assert self.kept.whole is not None
+        whys = {
+            "at ticks": evidence.rate is not None,
+            "up to a timeout": evidence.timeout is not None,
+            "over a table": not isinstance(self.recording, BagRecording),
+        }
+        for why in (why for why, is_so in whys.items() if is_so):
+            return NotCovered(claim.label, f"it is judged for each id, {why}")
+        slices = self.kept.whole.slices(claim.label, end)
+        return NotCovered(claim.label, slices) if isinstance(slices, str) else replace(claim, slices=slices)
 
     def _unread(self, evidence: Evidence, of: PropertySpecification) -> str:
         """Why evidence cannot say what a property reads of the recording; empty if it can."""

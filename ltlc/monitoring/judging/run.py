@@ -27,7 +27,7 @@ from ltlc.monitoring.columns.prepared import Prepared, prepare_all
 from ltlc.monitoring.columns.session import ByBlocks
 from ltlc.monitoring.judging.part import Part
 from ltlc.monitoring.judging.violations import violations_report, violations_text
-from ltlc.monitoring.later import JudgedTrack, can_recur, letters_of
+from ltlc.monitoring.later import JudgedTrack, can_recur
 from ltlc.runtime import documents, junit, reports, sampling
 from ltlc.runtime.properties import MonitoredProperty
 from ltlc.runtime.rows import ByRows
@@ -42,6 +42,8 @@ from ltlc.specification.specification import PropertySpecification, Specificatio
 if TYPE_CHECKING:
     from ltlc.assurance.evidence.document import Document
     from ltlc.monitoring.judging.evidence import Evidence
+    from ltlc.monitoring.judging.whole_runs import WholeRuns
+    from ltlc.monitoring.letters import Letters
 
 Watcher = Callable[[Block], None]
 """What is reported about each block once it has been judged."""
@@ -222,10 +224,11 @@ class Judge:
         absent = (name for name in readings(plan) if name not in recording.columns)
         session.absences = {name: recording.absence(name) for name in absent}
         digests = None if self.evidence is None else self.evidence.digests(path)
+        whole = self._whole_runs(recording.columns)
         blocks, watch, start = ByBlocks(session, self.prepared), Stopwatch(), perf_counter_ns()
         damage, part = None, Part(path, recording, self.reading)
         try:
-            self._run(blocks, path, part, watch, recording.columns, watchers)
+            self._run(blocks, whole, path, part, watch, recording.columns, watchers)
         except RecordingError as error:
             damage = error.diagnostic
         times = (watch.nanoseconds, perf_counter_ns() - start - watch.nanoseconds)
@@ -237,7 +240,10 @@ class Judge:
         judged = None if damage is not None and session.time is None else blocks
         evidence = None
         if self.evidence is not None and digests is not None and damage is None:
-            evidence = self.evidence.document(session, part, recording, self.reading, digests.files())
+            from ltlc.monitoring.judging.evidence import Kept
+
+            kept = Kept(_letters(session, whole), whole)
+            evidence = self.evidence.document(session, kept, part, recording, self.reading, digests.files())
             found += self.evidence.not_covered(evidence, self.specification.source)
         return RunReport(
             str(path),
@@ -251,6 +257,15 @@ class Judge:
             evidence=evidence,
             **self._made_of(path),
         )
+
+    def _whole_runs(self, columns: Collection[str]) -> WholeRuns | None:
+        """Those that evidence needs, where samples of these signals come in themselves."""
+        compiled = [] if self.evidence is None else self.evidence.whole_runs(self.compiled)
+        if self.evidence is None or not compiled:
+            return None
+        from ltlc.monitoring.judging.whole_runs import WholeRuns  # which only evidence needs
+
+        return WholeRuns(compiled, self.specification, self._given(columns), self.evidence.kept)
 
     def _made_of(self, path: Path) -> dict[str, Any]:
         """The provenance of a report; recordings that were opened in another way are not in files."""
@@ -288,11 +303,15 @@ class Judge:
 
     def plan(self, columns: Collection[str]) -> Plan:
         """What is monitored where samples of these signals come in themselves."""
-        computed = (name for name, signal in self.signals.items() if not isinstance(signal.definition, Field))
-        given = frozenset(computed).intersection(columns)
+        given = self._given(columns)
         if given not in self._plans:
             self._plans[given] = load_plan(self.compiled, self.specification, given)
         return self._plans[given]
+
+    def _given(self, columns: Collection[str]) -> frozenset[str]:
+        """The signals that are computed from others and come in themselves."""
+        computed = (name for name, signal in self.signals.items() if not isinstance(signal.definition, Field))
+        return frozenset(computed).intersection(columns)
 
     def remarks_on(self, path: Path, recording: Recording) -> list[Diagnostic]:
         """Those on the monitors; columns of the recording at `path` that nothing reads, signals that nothing gives."""
@@ -311,6 +330,7 @@ class Judge:
     def _run(
         self,
         by_blocks: ByBlocks,
+        whole: WholeRuns | None,
         path: Path,
         part: Part,
         watch: Stopwatch,
@@ -329,7 +349,9 @@ class Judge:
                 first = block.times[0] if session.time is None else session.time
                 _check_steps(session, int(block.times[-1] - first), path)
             by_blocks.take(block)
-            _settle(session)
+            if whole is not None:
+                whole.take(block)
+            _settle(session, whole)
             for watcher in watchers:
                 watcher(block)
             if session.is_over:
@@ -339,13 +361,23 @@ class Judge:
             ByRows(by_blocks.session).advance(end)
             for track in session.tracks:
                 track.hold(min(end, session.end))
-        _settle(session, is_over=True)
+            if whole is not None:
+                whole.end(end)
+        _settle(session, whole, is_over=True)
 
 
-def _settle(session: Session, *, is_over: bool = False) -> None:
+def _letters(session: Session, whole: WholeRuns | None) -> dict[str, Letters]:
+    """Those that are kept, by the labels of properties."""
+    pairs = ((track.property.label, track.letters) for track in session.tracks if isinstance(track, JudgedTrack))
+    found = {label: letters for label, letters in pairs if letters is not None}
+    return found if whole is None else found | whole.letters
+
+
+def _settle(session: Session, whole: WholeRuns | None, *, is_over: bool = False) -> None:
     """The letters of properties that are decided end there."""
+    kept = _letters(session, whole)
     for track in session.tracks:
-        if (letters := letters_of(track)) is not None:
+        if (letters := kept.get(track.property.label)) is not None and not letters.is_settled:
             letters.settle(None if track.decided_at is None else track.decided_at.time, is_over=is_over)
 
 
