@@ -117,8 +117,10 @@ def test_every_claim_is_shown_by_all_three_checks_and_where_there_is_none_not_al
         "  recorded: the letters are as stated; instants: 5, lines: 3",
         "  specification: its text, requirement and atoms are the same",
     ]
-    why = "it asks what held a nanosecond ago of what changes while nothing happens"
-    assert lines[9] == f"stays: nothing is claimed: {why}"
+    assert (
+        lines[9]
+        == "stays: nothing is claimed: it asks what held a nanosecond ago of what changes while nothing happens"
+    )
     assert "Not checked: that a property says what its requirement means" in lines[-2]
 
 
