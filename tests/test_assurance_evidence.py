@@ -8,6 +8,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from random import Random
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -216,6 +217,26 @@ def test_an_integer_that_is_no_double_is_compared_exactly(sign: int, tmp_path: P
     text = specification(["never i > 9007199254740992", "never i < -9007199254740992"])
     document = evidence_of(text, write_bag(tmp_path / "bag", rows))
     assert claim_of(document, f"c{(1 - sign) // 2}").letters == (Line(BEGINNING, (0,)),)
+    assert said_of(document, tmp_path / "bag")[0] == 0
+
+
+@pytest.mark.parametrize(("name", "value"), [("a", 1.0), ("b", 2.0), ("c", None), ("z", None)])
+def test_an_entry_of_one_list_is_found_at_the_index_of_its_name_in_another(name: str, value: float | None) -> None:
+    message = SimpleNamespace(name=["a", "b", "c"], position=[1.0, 2.0])
+    assert recorded.value_at(message, ["position", ["parallel", "name", name]]) == value
+
+
+def test_the_times_of_headers_are_those_of_the_lines(tmp_path: Path) -> None:
+    rows = []
+    for number, speed in enumerate((1.0, 3.0)):
+        message = Messages(Random(1)).of("/q")
+        message.pose.position.x = speed
+        message.header.stamp = make("builtin_interfaces/msg/Time", sec=1_700_000_000 + number, nanosec=5)
+        rows.append((BEGINNING + number, "/q", message))
+    text = specification(["never thing.position.x > 2"])
+    document = evidence_of(text, write_bag(tmp_path / "bag", rows), ReadOptions(stamp=Stamp.HEADER))
+    stamps = 1_700_000_000 * SECOND + 5, 1_700_000_001 * SECOND + 5
+    assert claim_of(document, "c0").letters == (Line(stamps[0], ()), Line(stamps[1], (0,)))
     assert said_of(document, tmp_path / "bag")[0] == 0
 
 
