@@ -87,10 +87,11 @@ class Browser:
 
     def wait_until(self, script: str) -> None:
         """Wait until `script` returns something true."""
-        end = time.monotonic() + PATIENCE
+        end, pause = time.monotonic() + PATIENCE, 0.01
         while not self.run(script):
             assert time.monotonic() < end, script
-            time.sleep(0.02)
+            time.sleep(pause)
+            pause = min(2 * pause, 0.2)  # each question costs both processes more than what is waited for
 
     def act(self, *actions: dict[str, Any]) -> None:
         """What a person does with a mouse, a wheel or a keyboard."""

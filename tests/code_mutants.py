@@ -26,15 +26,23 @@ def code_mutants(text: str, class_name: str) -> Iterator[str]:
     A comparison is turned or shifted, a number moved, a verdict or a branch exchanged, an `and` made an `or`; a clock
     is not set where it was, or set where it was not.
     """
+    return (mutant() for mutant in mutations(text, class_name))
+
+
+def mutations(text: str, class_name: str) -> list[Callable[[], str]]:
+    """What makes each of the mutants: of many, few are tried."""
     (found,) = (node for node in ast.parse(text).body if isinstance(node, ast.ClassDef) and node.name == class_name)
     lines = text.splitlines(keepends=True)
     before, after = lines[: found.lineno - 1], lines[found.end_lineno :]
     written = "".join(lines[found.lineno - 1 : found.end_lineno])
-    for number, _ in enumerate(_places(_class(written))):
+
+    def mutant(number: int) -> str:
         changed = _class(written)
         change = next(islice(_places(changed), number, None))
         change()
-        yield "".join([*before, ast.unparse(changed), "\n", *after])
+        return "".join([*before, ast.unparse(changed), "\n", *after])
+
+    return [partial(mutant, number) for number, _ in enumerate(_places(_class(written)))]
 
 
 def difference(text: str, mutant: str) -> str:

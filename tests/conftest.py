@@ -4,13 +4,23 @@ from __future__ import annotations
 
 import gc
 import os
+import signal
 import sys
-from collections.abc import Iterator
+from collections import defaultdict
+from collections.abc import Hashable, Iterator, Sequence
 from pathlib import Path
 
 import pytest
+from effort import ASKED, SHARE, limit_examples
 from hypothesis import settings
+from quick_gate import quick_gate
 from ros_support import Network, Send, own_domain
+
+from ltlc.automata import Budget, Exceeded, Task, translate_all
+from ltlc.automata.batch import Known
+from ltlc.base.limits import Watch
+from ltlc.cli import ALLOCATIONS
+from ltlc.semantics.monitor import Monitor
 
 # Time varies with the load of the machine, and no test is about it. In CI the same commit gets the same answer; new
 # examples are found where developers run the tests.
@@ -53,26 +63,68 @@ LONGEST = (
 """The files that take longest, or wait longest, first: so that at the end no worker waits for another."""
 
 
-def pytest_configure() -> None:
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """How much random tests draw."""
+    about = "what share of what random tests say they draw; campaigns take 1 or more (default: %(default)s)"
+    parser.addoption("--share", type=float, default=SHARE, metavar="SHARE", help=about)
+
+
+def pytest_configure(config: pytest.Config) -> None:
     """Keep what Python compiles with its environment, also where nothing is to be left beside the sources.
 
     A run starts hundreds of processes, each of which would compile all that it imports.
     """
+    ASKED.share = config.getoption("--share")
     if os.environ.pop("PYTHONDONTWRITEBYTECODE", None):
         sys.dont_write_bytecode = False
         sys.pycache_prefix = os.environ["PYTHONPYCACHEPREFIX"] = str(Path(sys.prefix) / "compiled")
+    if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
+        # As in a shell's background: what the tests start would ignore it, too, and some of it is ended by Ctrl-C.
+        signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Put the files of `LONGEST` first; `--no-loadscope-reorder` lets xdist keep this order."""
     places = {name: place for place, name in enumerate(LONGEST)}
     items.sort(key=lambda item: places.get(item.path.name, len(LONGEST)))
+    for function in {item.function for item in items if isinstance(item, pytest.Function)}:
+        limit_examples(function)
 
 
 def pytest_collection_finish() -> None:
-    """Let no garbage collection look through all tests and what they import, which is there to stay."""
+    """Let no garbage collection look through all tests and what they import, which is there to stay.
+
+    And let it look for garbage as seldom as in a command.
+    """
     gc.collect()
     gc.freeze()
+    gc.set_threshold(ALLOCATIONS)
+
+
+@pytest.fixture(scope="session", autouse=True)
+def translated_once() -> Iterator[None]:
+    """What differs in names only is translated once for all tests of a process: each translation takes a child."""
+    monitors: defaultdict[Budget, dict[Hashable, Monitor | Exceeded]] = defaultdict(dict)
+
+    def once(
+        tasks: Sequence[Task], budget: Budget, watch: Watch | None = None, known: Known | None = None
+    ) -> list[Monitor | Exceeded]:
+        here = {} if known is None else known
+        here |= monitors[budget]
+        found = translate_all(tasks, budget, watch, here)
+        monitors[budget] |= {shape: each for shape, each in here.items() if isinstance(each, Monitor)}
+        return found
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("ltlc.compiler.translate_all", once)
+        yield
+
+
+@pytest.fixture
+def quickly() -> Iterator[None]:
+    """What is built is not cross-checked and not replayed, for tests that are about something else."""
+    with quick_gate():
+        yield
 
 
 @pytest.fixture(scope="module")

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from contextlib import nullcontext
+
 from code_mutants import code_mutants, difference
+from effort import fewer_runs
 from stepping import from_text
 
 from ltlc.assurance.messages import Messages
@@ -26,6 +29,12 @@ def judged(compiled: Compiled, program: Program) -> Replayed | Deviation:
     return replay(compiled, program.start, program.runs(compiled, samples(compiled)))
 
 
+def is_right(compiled: Compiled, program: Program) -> bool:
+    """Whether the replay finds nothing, on a share of its runs."""
+    with fewer_runs():
+        return isinstance(judged(compiled, program), Replayed)
+
+
 def outcomes(text: str, target: str, *fault: str) -> list[Replayed | Deviation]:
     """What the replay says of each property; `fault` is a text of the emitted code and what it is replaced by."""
     compiled, specification = from_text(text)
@@ -36,7 +45,8 @@ def outcomes(text: str, target: str, *fault: str) -> list[Replayed | Deviation]:
         emitted = emitted.replace(right, wrong)
     found = programs(target, emitted, compiled, specification, MESSAGES)
     assert found is not None
-    return [judged(c, program) for c, program in zip(compiled, found, strict=True)]
+    with nullcontext() if fault else fewer_runs():
+        return [judged(c, program) for c, program in zip(compiled, found, strict=True)]
 
 
 def missed_changes(text: str) -> tuple[Compiled, list[str]]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from effort import share_of
 from test_analysis_findings import found_in
 
 from ltlc.base.codes import CODES
@@ -27,7 +28,13 @@ def place(found: Diagnostic) -> str:
     return f"{start.line}:{start.column} {found.code}"
 
 
-@pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
+WITHOUT = [path for path in FILES if path.stem not in {row[0] for row in ROWS}]
+"""In which nothing is found: a share of them is enough, since most of what is said of them is the same."""
+
+
+@pytest.mark.parametrize(
+    "path", [path for path in FILES if path not in WITHOUT[share_of(len(WITHOUT)) :]], ids=lambda path: path.stem
+)
 def test_what_is_found_in_a_file_has_been_judged(path: Path) -> None:
     judged = [f"{where} {code}" for file, where, code, *_ in ROWS if file == path.stem]
     assert sorted(map(place, found_in(path, pedantic=False))) == sorted(judged)
@@ -43,7 +50,7 @@ def test_nearly_all_that_is_found_is_of_use() -> None:
     assert judgements.count("yes") / len(judgements) >= USEFUL
 
 
-@pytest.mark.parametrize("path", FILES[::6], ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", FILES[::12], ids=lambda path: path.stem)
 def test_what_is_told_on_demand_is_all_that_is_added(path: Path) -> None:
     usual, pedantic = found_in(path, pedantic=False), found_in(path, pedantic=True)
     assert [each for each in pedantic if not CODES[each.code].pedantic] == usual

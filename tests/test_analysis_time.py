@@ -8,6 +8,7 @@ from functools import partial
 from itertools import product
 
 import pytest
+from effort import share_of
 from studies import study
 
 from ltlc.analysis.explanation import explain
@@ -148,7 +149,7 @@ def timed(chance: random.Random) -> Property:
     )
 
 
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("seed", range(share_of(12)))
 def test_automata_and_the_search_for_runs_agree(seed: int) -> None:
     chance = random.Random(seed)
     left, right = timed(chance), timed(chance)
@@ -162,7 +163,7 @@ def test_automata_and_the_search_for_runs_agree(seed: int) -> None:
         assert holds_on_lasso(encode(left, EPISODE), run)
 
 
-@pytest.mark.parametrize("seed", range(16))
+@pytest.mark.parametrize("seed", range(share_of(16)))
 def test_a_question_that_some_runs_settle_is_answered_as_all_runs_would(seed: int) -> None:
     chance = random.Random(seed)
     left, right = (encode(timed(chance), EPISODE) for _ in range(2))
@@ -200,7 +201,7 @@ def short_runs(property_: Property, count: int) -> Iterator[tuple[Word, Verdict]
         yield from ((word, monitor.run(word)[-1]) for word, _ in zip(found, range(count), strict=False))
 
 
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("seed", range(share_of(12)))
 def test_a_run_that_is_found_means_what_the_monitor_says(seed: int) -> None:
     property_ = timed(random.Random(seed))
     for word, verdict in short_runs(property_, 20):

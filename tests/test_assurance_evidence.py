@@ -11,6 +11,7 @@ from random import Random
 from typing import Any
 
 import pytest
+from effort import share_of
 from evidencing import (
     BEGINNING,
     PROPERTIES,
@@ -335,7 +336,8 @@ def test_an_atom_that_is_something_else_is_noticed_by_the_seam(tmp_path: Path) -
     document = evidence_of(text, write_bag(tmp_path / "bag", random_rows(Random(3))))
     mutants = changed_atoms(document)
     assert len(mutants) > 400
-    assert [mutant for mutant in mutants if not seam(mutant, text)] == []
+    tried = Random(1).sample(mutants, share_of(len(mutants)))
+    assert [mutant for mutant in tried if not seam(mutant, text)] == []
 
 
 def test_other_labels_texts_rates_and_specifications_are_noticed_by_the_seam(tmp_path: Path) -> None:

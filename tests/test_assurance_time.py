@@ -10,7 +10,7 @@ from itertools import islice
 from typing import TypeVar
 
 import pytest
-from code_mutants import code_mutants
+from code_mutants import mutations
 from replaying import judged, outcomes, samples
 from stepping import from_text
 from timed import ARRIVAL, MESSAGE, X, Y, Z, compiled
@@ -145,8 +145,12 @@ def test_the_replay_notices_emitted_code_that_changes_a_verdict(kind: Kind) -> N
     runs = list(right.runs(large, samples(large)))
     assert isinstance(replay(large, right.start, runs), Replayed)
     assert not code_differs(small, class_text(small))
-    pairs = zip(*(code_mutants(class_text(made), "Emitted") for made in (small, large)), strict=True)
-    wrong = few(pairs, partial(code_differs, small))
+    pairs = zip(*(mutations(class_text(made), "Emitted") for made in (small, large)), strict=True)
+
+    def changes_a_verdict(mutant: Callable[[], str]) -> bool:
+        return code_differs(small, mutant())
+
+    wrong = [mutant() for mutant in few(pairs, changes_a_verdict)]
     assert wrong
     missed = [mutant for mutant in wrong if isinstance(replay(large, program_of(large, mutant).start, runs), Replayed)]
     assert not missed, missed[0]

@@ -13,6 +13,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
+from quick_gate import quick_gate
 from ros_support import own_domain, wait_until
 
 from ltlc.cli import main
@@ -34,7 +35,8 @@ def package(tmp_path_factory: pytest.TempPathFactory) -> Path:
     (folder / "watch.txt").write_text(PROPERTIES, encoding="utf-8")
     place = folder / "src" / "watch_monitor"
     place.parent.mkdir()
-    assert main(["build", str(folder / "watch.txt"), "--target", "ament", "-o", str(place)]) == 0
+    with quick_gate():
+        assert main(["build", str(folder / "watch.txt"), "--target", "ament", "-o", str(place)]) == 0
     return place
 
 
@@ -44,7 +46,8 @@ def files(package: Path) -> dict[str, bytes]:
 
 def build(folder: Path, text: str) -> int:
     (folder / "watch.txt").write_text(text, encoding="utf-8")
-    return main(["build", str(folder / "watch.txt"), "--target", "ament", "-o", str(folder / "package")])
+    with quick_gate():
+        return main(["build", str(folder / "watch.txt"), "--target", "ament", "-o", str(folder / "package")])
 
 
 def test_a_package_needs_the_packages_of_the_messages_that_it_reads(package: Path) -> None:
@@ -80,6 +83,7 @@ def test_a_second_build_gives_the_same_bytes_but_what_a_person_has_filled_in_and
     assert found == before | {"package.xml": filled_in.encode()}
 
 
+@pytest.mark.usefixtures("quickly")
 def test_a_name_with_two_hyphens_leaves_every_file_of_xml_well_formed(tmp_path: Path) -> None:
     (tmp_path / "safe--new-.txt").write_text("decl v /v Float64.data\nnever v > 3\n", encoding="utf-8")
     package = tmp_path / "package"

@@ -15,10 +15,11 @@ from typing import Any
 import pytest
 from conditions_support import CONDITIONS, DECLARED
 from edges import drawn
+from effort import share_of
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 from lowered import texts
-from replaying import MESSAGES, judged
+from replaying import MESSAGES, is_right, judged
 from stepping import expected, from_text, machines, samples, specification
 
 from ltlc.assurance.c_programs import rust_programs
@@ -77,7 +78,7 @@ def test_what_reads_nothing_is_judged_in_time() -> None:
     for of, program in zip(
         compiled, rust_programs(file_of(compiled, whole), compiled, whole, MESSAGES) or (), strict=True
     ):
-        assert isinstance(judged(of, program), Replayed)
+        assert is_right(of, program)
 
 
 @needs_rustc
@@ -87,7 +88,7 @@ def test_every_spelling_is_what_the_reference_says() -> None:
     assert len(some) > 90
     functions, chance = library(some, whole), random.Random(1)
     given_ = dict.fromkeys(s for each in some for i in each.specification.inputs() for s, _ in fields(i.signal))
-    for _ in range(80):
+    for _ in range(share_of(80)):
         sample = {signal: hostile(signal, chance) for signal in given_}
         monitors = functions.monitors()
         assert monitors.step(1, sample, ())
@@ -125,7 +126,7 @@ def test_the_replay_finds_nothing_in_what_is_emitted_for_each_feature() -> None:
     assert found is not None
     assert len(some) > 12
     for each, program in zip(some, found, strict=True):
-        assert isinstance(judged(each, program), Replayed), each.specification.text
+        assert is_right(each, program), each.specification.text
 
 
 SIGNALS = """\
@@ -179,7 +180,7 @@ def test_the_replay_finds_nothing_in_what_looks_at_samples_with_ticks(text: str)
     for of, program in zip(
         compiled, rust_programs(file_of(compiled, whole), compiled, whole, MESSAGES) or (), strict=True
     ):
-        assert isinstance(judged(of, program), Replayed), of.specification.text
+        assert is_right(of, program), of.specification.text
 
 
 @needs_rustc
@@ -221,7 +222,7 @@ def test_a_property_may_be_called_as_what_the_functions_of_the_file_call_their_t
     for each, program in zip(
         compiled, rust_programs(file_of(compiled, whole), compiled, whole, MESSAGES) or (), strict=True
     ):
-        assert isinstance(judged(each, program), Replayed)
+        assert is_right(each, program)
 
 
 @needs_rustc

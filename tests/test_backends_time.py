@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterable
 from typing import Any, NamedTuple
 
 import pytest
+from effort import share_of
 from stepping import emitted as python_module
 from stepping import from_text
 from timed import ARRIVAL, MESSAGE, Draw, compiled
@@ -199,7 +200,7 @@ def deviates(made: Compiled, start: Callable[[int], Running], run: Observation, 
 @pytest.mark.parametrize("form", [folded, emitted])
 def test_what_runs_gives_the_verdicts_of_the_monitor_at_every_nanosecond(form: Any) -> None:
     judged = 0
-    for seed in range(100):
+    for seed in range(share_of(100)):
         draw = Draw(seed)
         property_ = draw.property()
         made = compiled(property_)
@@ -210,12 +211,12 @@ def test_what_runs_gives_the_verdicts_of_the_monitor_at_every_nanosecond(form: A
             judged += 1
             heard = {time for time in range(run.until) if draw.chance.random() < 1 / 4}
             assert not deviates(made, start, run, heard), (property_, run, heard)
-    assert judged > 300
+    assert judged > share_of(300)
 
 
 def test_a_step_takes_the_clock_steps_before_it_whatever_came_meanwhile() -> None:
     judged = 0
-    for seed in range(100):
+    for seed in range(share_of(100)):
         draw = Draw(seed)
         made = compiled(draw.property())
         if not made.machine.is_timed:
@@ -229,7 +230,7 @@ def test_a_step_takes_the_clock_steps_before_it_whatever_came_meanwhile() -> Non
                     state = made.monitor.step(state, instant)
                 running.step(time, letter)
                 assert running.monitor.verdict is made.monitor.verdicts[state], (made.specification.property, run)
-    assert judged > 300
+    assert judged > share_of(300)
 
 
 def test_a_signal_called_time_is_told_from_the_time() -> None:
@@ -292,7 +293,7 @@ def test_emitted_python_counts_ages_from_news_that_comes_before_its_history_is_f
     monitored, plan = python_module(compiled)["Monitors"], load_plan(compiled, specification)
     read = {wanted.signal.name for wanted in compiled[0].specification.inputs() if isinstance(wanted, New)}
     chance = random.Random(text)
-    for _ in range(300):
+    for _ in range(share_of(300)):
         rows, time = ByRows(Session(plan)), 0
         rows.begin(time)
         monitors = monitored(time)

@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 from c_mutants import read_back as read_back_c
 from read_mutants import read_back
-from replaying import MESSAGES, judged, outcomes
+from replaying import MESSAGES, is_right, outcomes
 from stepping import from_text, session
 
 from ltlc.assurance.c_library import compiler
@@ -105,7 +105,7 @@ def test_emitted_c_does_what_is_defined_while_signals_are_silent(rate: str) -> N
     files = c.emit(compiled, whole)
     found = c_programs(files, compiled, whole, MESSAGES)
     assert found is not None
-    assert all(isinstance(judged(of, program), Replayed) for of, program in zip(compiled, found, strict=True))
+    assert all(is_right(of, program) for of, program in zip(compiled, found, strict=True))
     assert all(isinstance(each, ReadBack) for each in read_back_c(files, compiled, whole))
 
 
@@ -119,7 +119,7 @@ def test_emitted_rust_does_what_is_defined_while_signals_are_silent(rate: str) -
         pytest.skip("there is no compiler for Rust here")
     found = rust_programs(file, compiled, whole, MESSAGES)
     assert found is not None
-    assert all(isinstance(judged(of, program), Replayed) for of, program in zip(compiled, found, strict=True))
+    assert all(is_right(of, program) for of, program in zip(compiled, found, strict=True))
 
 
 @pytest.mark.parametrize(

@@ -120,3 +120,14 @@ def test_of_one_recording_it_is_written_as_a_whole_or_not_at_all(
     assert main(command) == 2
     assert not Path("one.evidence").exists()
     assert "one.evidence is not written: not all of the recording could be judged" in capsys.readouterr().err
+
+
+def test_the_folder_of_a_campaign_is_certified_as_its_recordings_are(
+    drives: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    campaign()
+    assert main(["certify", "props.txt", "--evidence", "all.evidence", "drives", "-q"]) == 0
+    shutil.rmtree(drives / "c")
+    assert main(["certify", "props.txt", "--evidence", "all.evidence", "drives", "-q"]) == 3
+    assert main(["certify", "props.txt", "--evidence", "all.evidence", "nowhere/*", "-q"]) == 2
+    assert "`nowhere/*` matches no recording" in capsys.readouterr().err

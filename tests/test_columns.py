@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 from columns_support import DECLARATIONS, Draw, Drawn, judged, sizes, state, trails
+from effort import share_of
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from stepping import FLAG, FLAGS, MODE, NAMES, SAMPLES, SCAN, X, Y, Z, from_text, numeric
@@ -39,7 +40,7 @@ from ltlc.specification.expressions import Count, Relation, ValueType
 from ltlc.specification.wire import PRIMITIVES
 
 
-@pytest.mark.parametrize("seed", range(50))
+@pytest.mark.parametrize("seed", range(share_of(50)))
 def test_what_columns_find_is_what_the_session_finds_row_by_row(seed: int) -> None:
     drawn = Draw(Random(seed)).drawn()
     with sizes(Random(seed)):
@@ -47,7 +48,7 @@ def test_what_columns_find_is_what_the_session_finds_row_by_row(seed: int) -> No
     assert state(fast.session) == state(reference), drawn.text
 
 
-@pytest.mark.parametrize("seed", range(30))
+@pytest.mark.parametrize("seed", range(share_of(30)))
 def test_what_properties_go_through_is_by_columns_what_it_is_row_by_row(seed: int) -> None:
     drawn = Draw(Random(seed)).drawn()
     reference, fast = judged(drawn, Trailing)
@@ -214,7 +215,7 @@ def test_an_integer_is_held_through_a_block_without_any(largest: int) -> None:
 )
 def test_large_integers_of_either_sign_are_compared_exactly(text: str, edge: int) -> None:
     """Of the integers around 2^53 and -2^53 every other one is a double, further out fewer, and none is rounded to."""
-    for seed in range(4):
+    for seed in range(share_of(4)):
         chance = Random(seed)
         least, most = max(-(2**63), edge - 3), min(2**63 - 1, edge + 3)
         near = chance.randint(least, most)
@@ -289,7 +290,7 @@ def test_a_recording_may_have_no_array(tmp_path: Path, capsys: pytest.CaptureFix
 )
 def test_values_at_openings_are_judged_by_columns(text: str) -> None:
     """Also where what is divided by them has no value, and in a scope that is open at the end of a block."""
-    for seed in range(8):
+    for seed in range(share_of(8)):
         w = Random(seed).choices([0.0, 0.0, -1.0, 0.25, 0.5], k=300)
         found = rows(150 + seed * 3, v=lambda i: 3 + 3 * math.cos(i / 4), w=w.__getitem__)
         reference, fast = judged(Drawn(f"{DECLARATIONS}p: {text}\n", [found[:7], found[7:120], found[120:]]), Trailing)
@@ -356,7 +357,7 @@ def test_comparisons_with_constants_are_those_of_each_number(
         assert unpack(each, len(values)).tolist() == [compare(x, COMPARED[function], constant) for x in values]
 
 
-@pytest.mark.parametrize("seed", range(20))
+@pytest.mark.parametrize("seed", range(share_of(20)))
 def test_comparisons_in_small_parts_are_those_of_each_number(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
     for name, size in {"MANY": 0, "MOST": 1, "SMALL": 8, "WIDER": 1}.items():
         monkeypatch.setattr(thresholds, name, size)

@@ -4,27 +4,25 @@ from __future__ import annotations
 
 import random
 from collections.abc import Sequence
+from functools import cache
 
 import numpy as np
 import pytest
 from columns_support import state
 from each_by_definition import HEAD, ONE_TOPIC, TWO_TOPICS, Row, random_rows
+from effort import share_of
+from stepping import from_text
 
-from ltlc.automata import Budget
 from ltlc.backends.python.load import load_plan
-from ltlc.base.source import Source
-from ltlc.compiler import compile_specification
-from ltlc.frontend.language import load_text
 from ltlc.inputs.recordings.blocks import Block, blocks_of
 from ltlc.inputs.recordings.rows import Column
 from ltlc.inputs.recordings.rows import Row as Rows
 from ltlc.monitoring.columns import elements
 from ltlc.monitoring.columns.ids import Numbers, runs_of
-from ltlc.monitoring.columns.prepared import prepare_all
+from ltlc.monitoring.columns.prepared import Prepared, prepare_all
 from ltlc.monitoring.columns.session import ByBlocks
 from ltlc.runtime.rows import ByRows
-from ltlc.runtime.session import Session
-from ltlc.semantics.encodings import EPISODE
+from ltlc.runtime.session import Plan, Session
 from ltlc.specification.expressions import ValueType
 
 COLUMNS = {name: Column(ValueType.NUMBER) for name in ("id", "kind", "dist", "fid", "prog", "v")}
@@ -39,14 +37,18 @@ def cut(chance: random.Random, rows: Sequence[Row], names: Sequence[str]) -> lis
     return [block for first in range(0, len(rows), size) for block in blocks_of(taken[first : first + size], columns)]
 
 
+@cache
+def planned(text: str) -> tuple[Plan, Sequence[Prepared]]:
+    """What rows and columns are judged by; once for all runs."""
+    compiled, specification = from_text(HEAD + text)
+    return load_plan(compiled, specification), prepare_all(compiled, specification.source)
+
+
 def both(text: str, rows: Sequence[Row], chance: random.Random, *, reads: bool = False) -> tuple[Session, ByBlocks]:
     """A session row by row, and one by columns, which is read after each block if one `reads`."""
-    specification, found = load_text(Source("props.txt", HEAD + text))
-    assert specification is not None, found
-    compiled, _ = compile_specification(specification, EPISODE, Budget())
-    plan = load_plan(compiled, specification)
+    plan, prepared = planned(text)
     reference = ByRows(Session(plan))
-    fast = ByBlocks(Session(plan), prepare_all(compiled, specification.source))
+    fast = ByBlocks(Session(plan), prepared)
     names = [signal.name for signal in plan.signals if signal.name in COLUMNS]
     for block in cut(chance, rows, names):
         for time, of, values, topics in block.rows(set(names)):
@@ -77,7 +79,7 @@ CASES = [*((text, "id") for text in (*ONE_TOPIC, *WITH_OTHERS)), *((text, "id, f
 @pytest.mark.parametrize(("text", "keys"), CASES)
 def test_what_columns_find_of_all_ids_is_what_rows_find(text: str, keys: str) -> None:
     chance = random.Random(f"{text} {keys}")
-    for _ in range(12):
+    for _ in range(share_of(20)):
         rows = random_rows(chance, chance.randint(1, 80), chance.sample(range(12), chance.randint(1, 8)))
         reference, fast = both(f"p: each g of {keys}: {text}", rows, chance)
         assert state(fast.session) == state(reference)
@@ -152,7 +154,7 @@ def test_most_that_is_said_of_what_messages_have_goes_by_columns(text: str) -> N
 )
 def test_a_clock_step_of_a_slice_judges_the_values_of_its_last_step(text: str) -> None:
     chance = random.Random(text)
-    for _ in range(12):
+    for _ in range(share_of(20)):
         rows = random_rows(chance, 60, [1, 2, 3])
         reference, fast = both(f"p: each g of id: {text}", rows, chance)
         assert state(fast.session) == state(reference)

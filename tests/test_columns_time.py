@@ -8,6 +8,7 @@ from random import Random
 
 import pytest
 from columns_support import DECLARATIONS, Drawn, judged, sizes, state
+from effort import share_of
 from stepping import from_text
 
 from ltlc.inputs.recordings.rows import Row
@@ -82,7 +83,7 @@ def drawn(seed: int, forms: Sequence[str] = FORMS) -> Drawn:
     return Drawn(f"{DECLARATIONS}p: {text}\n", [rows[:first], rows[first:second], rows[second:]])
 
 
-@pytest.mark.parametrize("seed", range(40))
+@pytest.mark.parametrize("seed", range(share_of(40)))
 def test_properties_with_clocks_are_judged_by_columns_as_row_by_row(seed: int) -> None:
     of = drawn(seed)
     with sizes(Random(seed)):
@@ -90,7 +91,7 @@ def test_properties_with_clocks_are_judged_by_columns_as_row_by_row(seed: int) -
     assert state(fast.session) == state(reference), of.text
 
 
-@pytest.mark.parametrize("seed", range(40))
+@pytest.mark.parametrize("seed", range(share_of(40)))
 def test_what_is_counted_by_columns_is_what_is_counted_row_by_row(seed: int) -> None:
     of = drawn(seed, COUNTS)
     with sizes(Random(seed)):
@@ -185,7 +186,7 @@ def beats(chance: Random, gaps: Sequence[int], count: int) -> list[Row]:
 )
 @pytest.mark.parametrize("gaps", [[10**8], [0, 1, 2, 15, 10**8], [10**8, 10**8, 10**8, 5 * 10**8]], ids=str)
 def test_what_follows_messages_by_a_nanosecond_is_where_it_is_row_by_row(text: str, gaps: list[int]) -> None:
-    for seed in range(8):
+    for seed in range(share_of(8)):
         found = beats(Random(seed), gaps, 300 + 17 * seed)
         reference, fast = judged(Drawn(f"{DECLARATIONS}p: {text}\n", [found[:100], found[100:]]))
         assert [way.because for way in fast.ways] == [{}]

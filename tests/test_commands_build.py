@@ -69,6 +69,7 @@ def test_a_signal_may_be_called_what_an_emitted_class_calls_its_own(folder: Path
     assert main(["build", "values.txt", "--target", "python", "-o", "values.py"]) == 0
 
 
+@pytest.mark.usefixtures("quickly")
 def test_the_same_file_gives_the_same_bytes(folder: Path) -> None:
     main(["build", "props.txt", "-o", "one.py", "--certificate", "one.cert"])
     main(["build", "props.txt", "-o", "two.py", "--certificate", "two.cert"])
@@ -76,6 +77,7 @@ def test_the_same_file_gives_the_same_bytes(folder: Path) -> None:
     assert (folder / "one.cert").read_bytes() == (folder / "two.cert").read_bytes()
 
 
+@pytest.mark.usefixtures("quickly")
 def test_six_places_are_patrolled_with_a_certificate(folder: Path, capsys: Any) -> None:
     places = "\n".join(f"decl l{n} /l{n} Bool.data" for n in range(6))
     patrol = " and ".join(f"(always eventually l{n})" for n in range(6))
@@ -231,6 +233,7 @@ def compiled_over_too_few_letters(specification: Specification, *_: object) -> t
     return compile_specification(replace(specification, properties=(small,)), EPISODE, Budget())
 
 
+@pytest.mark.usefixtures("quickly")
 def test_what_the_analyses_have_translated_is_not_translated_again(
     folder: Path, capsys: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -264,12 +267,14 @@ def test_errors_of_the_file_are_findings_and_a_file_that_is_not_there_is_unusabl
     assert "no/such/folder.py cannot be written" in shown
 
 
+@pytest.mark.usefixtures("quickly")
 def test_what_the_analyses_find_is_shown_and_does_not_keep_build_from_building(folder: Path, capsys: Any) -> None:
     (folder / "props.txt").write_text("never robot.velocity > 2\neventually robot.velocity > 3\n")
     assert main(["build", "props.txt"]) == 0
     assert "error[LTL601]" in capsys.readouterr().err
 
 
+@pytest.mark.usefixtures("quickly")
 def test_certificates_are_accepted_and_tampered_ones_are_not(folder: Path, capsys: Any) -> None:
     main(["build", "props.txt", "--certificate", "props.cert"])
     assert main(["certify", "props.txt", "props.cert"]) == 0
@@ -281,6 +286,7 @@ def test_certificates_are_accepted_and_tampered_ones_are_not(folder: Path, capsy
 
 
 @pytest.mark.parametrize("target", ["python", "ros2"])
+@pytest.mark.usefixtures("quickly")
 def test_certify_compares_code_and_says_where_it_is_not_what_is_emitted(folder: Path, capsys: Any, target: str) -> None:
     main(["build", "props.txt", "--target", target, "-o", "code.py", "--certificate", "props.cert"])
     capsys.readouterr()
@@ -293,6 +299,7 @@ def test_certify_compares_code_and_says_where_it_is_not_what_is_emitted(folder: 
     assert "in `Slow.step`, `if robot_velocity >= 2.0:` where ltlc emits `if robot_velocity > 2.0:`" in said
 
 
+@pytest.mark.usefixtures("quickly")
 def test_code_that_is_not_python_is_refused_and_a_file_that_is_not_there_is_unusable(folder: Path, capsys: Any) -> None:
     main(["build", "props.txt", "--certificate", "props.cert"])
     (folder / "code.py").write_text("def f(:")
@@ -303,6 +310,7 @@ def test_code_that_is_not_python_is_refused_and_a_file_that_is_not_there_is_unus
     assert main(["certify", "props.txt", "props.cert", "--code", "nowhere.py"]) == 2
 
 
+@pytest.mark.usefixtures("quickly")
 def test_certify_prints_what_the_certificates_assume(folder: Path, capsys: Any) -> None:
     (folder / "props.txt").write_text("never (robot.velocity > 2 and robot.velocity < 1)\n")
     main(["build", "props.txt", "--certificate", "props.cert"])

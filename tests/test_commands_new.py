@@ -18,6 +18,7 @@ import numpy as np
 import pyarrow as pa
 import pytest
 from bag_support import LEVEL, ODOMETRY, SCAN, STORE, Sent, made, mcap, odometry, random_message, ros1, rosbag2
+from effort import share_of
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from language_support import compiled
@@ -447,7 +448,7 @@ def test_a_column_whose_values_change_their_type_is_not_guessed(
     assert "# column `b`: its values are not all numbers" in text
 
 
-@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("seed", range(share_of(8)))
 def test_any_bag_passes_what_is_made_of_it(seed: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     chance = Random(seed)
     topics = [(f"/t{number}", chance.choice([*TYPES_OF_MESSAGES, LEVEL])) for number in range(3)]
@@ -482,7 +483,7 @@ def test_the_bags_of_others_pass_what_is_made_of_them(
 EXPRESSIONS = ["abs(v)", "hypot(p.x, p.y)", "max(abs(o.roll), abs(o.pitch))", "min(scan)", "n"]
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", range(share_of(3)))
 def test_what_is_measured_is_what_the_monitors_find(seed: int, tmp_path: Path) -> None:
     chance = Random(seed)
     declarations = (

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from effort import share_of
 from timed import Draw, holds, ordinary_atoms
 
 from ltlc.analysis.comparison.other_bounds import LARGEST, Bound, NotKnownError
@@ -102,7 +103,7 @@ def test_a_difference_that_no_run_shows_is_not_claimed() -> None:
         relate_on_infinite_runs(pair(And(formula, encode(Eventually(Now(X)), EPISODE)), FALSE))
 
 
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("seed", range(share_of(12)))
 def test_other_bounds_end_as_the_definition_has_it(seed: int) -> None:
     draw = Draw(seed)
     property_ = draw.property(depth=1)

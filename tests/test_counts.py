@@ -7,6 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from effort import share_of
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from stepping import from_text, ns, session
@@ -221,7 +222,7 @@ def test_compiled_code_counts_as_rows_do(emitted: Callable[[list[Compiled], Spec
     text = DECLARED + "".join(f"{each}\n" for each in [*EDGES, *MESSAGES])
     compiled, whole = from_text(text)
     library, chance = emitted(compiled, whole), random.Random(4)
-    for _ in range(15):
+    for _ in range(share_of(15)):
         monitors, live, time = library.monitors(), session(text), 0
         for _ in range(40):
             time += chance.choice([0, 1, 1, 2, 3, 6])
@@ -234,6 +235,7 @@ def test_compiled_code_counts_as_rows_do(emitted: Callable[[list[Compiled], Spec
             assert shown == [track.verdict for track in live.tracks]
 
 
+@pytest.mark.usefixtures("quickly")
 def test_a_property_that_counts_is_certified_from_a_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     props, certificate = tmp_path / "props.txt", tmp_path / "props.cert"
     props.write_text(f"{V}never once new v 4 times within 1 s\nuntil once v > 2 3 times, v < 9\n", encoding="utf-8")

@@ -47,7 +47,6 @@ FORMS: dict[str, list[str]] = {
         *("never mean(scan) > 1", "never distance(v, v, kitchen) > 1", "never cup.distance.cat < 1"),
         *("never cup.velocity > 1", "never cup.orientation > 1"),
     ],
-    "`_rate_`": ["never v > 1\n_rate_ = 10"],
 }
 """Properties of each form; `{}` is where a `limit` stands."""
 

@@ -23,6 +23,7 @@ from each_by_definition import (
     random_rows,
     run,
 )
+from effort import share_of
 from language_support import compiled
 from stepping import session
 
@@ -82,7 +83,7 @@ def compare(of: Quantified, rows: list[Row], until: int) -> None:
 def test_slices_are_judged_as_runs_by_themselves(text: str, keys: str) -> None:
     chance = random.Random(f"{text} {keys}")
     of = quantified(text, keys)
-    for _ in range(40):
+    for _ in range(share_of(40)):
         rows = random_rows(chance, chance.randint(1, 60), chance.sample(range(9), chance.randint(1, 5)))
         compare(of, rows, rows[-1][0] + chance.choice([0, 10, 100]))
 
@@ -94,7 +95,7 @@ RATED = [text for text in ONE_TOPIC if " v " in f" {text} " and ("kind" in text 
 def test_with_a_rate_the_ticks_of_the_session_are_steps_of_every_slice(text: str) -> None:
     chance = random.Random(text)
     of = quantified(text, "id", "_rate_ = 100000\n")
-    for _ in range(25):
+    for _ in range(share_of(25)):
         rows = random_rows(chance, chance.randint(1, 40), chance.sample(range(9), chance.randint(1, 4)))
         first: Row = (rows[0][0], "/odom", {"v": 1.5})  # with this the ticks begin, of each slice by itself, too
         slower = [(1000 * time, topic, values) for time, topic, values in (first, *rows)]

@@ -115,6 +115,7 @@ def test_other_targets_refuse_by_name_what_is_judged_for_each_id(target: str) ->
         assert [each.code for each in refused.value.diagnostics] == ["LTL708"]
 
 
+@pytest.mark.usefixtures("quickly")
 def test_a_change_in_what_slices_a_run_is_refused_by_certify(tmp_path: Path) -> None:
     text, node, certificate = tmp_path / "props.txt", tmp_path / "node.py", tmp_path / "props.cert"
     text.write_text(TEXTS["the id as a value"])
@@ -135,6 +136,7 @@ def outcome_of(package: Path) -> subprocess.CompletedProcess[str]:
     return subprocess.run(command, cwd=package, env=environment, capture_output=True, text=True, check=False)
 
 
+@pytest.mark.usefixtures("quickly")
 def test_a_package_replays_its_slices_where_it_is_installed(tmp_path: Path) -> None:
     text, package = tmp_path / "goals.txt", tmp_path / "package"
     text.write_text(TEXTS["gone"])

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 from each_by_definition import HEAD, Row, give, plan_of, random_rows
+from effort import share_of
 from language_support import compiled
 
 import ltlc
@@ -50,7 +51,7 @@ ACCEPTED = (
 """Properties P of which `always (new s implies P)` is accepted, too."""
 
 
-HOW_MANY = 12
+HOW_MANY = share_of(20)
 """Runs for each property."""
 
 

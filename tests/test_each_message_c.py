@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 from each_by_definition import HEAD, give, random_rows
+from effort import share_of
 from stepping import from_text
 from test_each_c import difference, outcome
 from test_each_message import MANY
@@ -124,7 +125,7 @@ def require_as_by_rows(text: str, library: Loaded) -> None:
     plan = load_plan(compiled, specification)
     opener = specification.properties[0].slicing
     assert isinstance(opener, Instances)
-    for seed in range(30):
+    for seed in range(share_of(30)):
         rows, instances = ByRows(Session(plan)), library.monitors()
         (track,) = rows.tracks
         for time, topic, values in random_rows(random.Random(seed), 80, range(14)):

@@ -80,6 +80,7 @@ def test_what_a_node_says_of_instances_is_read_back(right: str, wrong: str) -> N
     assert differs(code.replace(right, wrong))
 
 
+@pytest.mark.usefixtures("quickly")
 def test_a_package_replays_its_instances_where_it_is_installed(tmp_path: Path) -> None:
     text, package = tmp_path / "goals.txt", tmp_path / "package"
     text.write_text(ANSWERED)

@@ -7,7 +7,7 @@ from random import Random
 
 import pytest
 from language_support import codes_of, only_property
-from replaying import MESSAGES, judged, outcomes
+from replaying import MESSAGES, is_right, outcomes
 from stepping import from_text, ns, session
 
 from ltlc.analysis.atom_words import atom_text
@@ -122,7 +122,7 @@ def test_c_begins_with_the_other_value(settings: str) -> None:
     )
     programs = c_programs(files, compiled, specification, MESSAGES)
     assert programs is not None
-    assert all(isinstance(judged(*pair), Replayed) for pair in zip(compiled, programs, strict=True))
+    assert all(is_right(*pair) for pair in zip(compiled, programs, strict=True))
 
 
 @pytest.mark.skipif(rust_compiler() is None, reason="there is no rustc here")
@@ -136,7 +136,7 @@ def test_rust_begins_with_the_other_value(settings: str) -> None:
     )
     programs = rust_programs(file, compiled, specification, MESSAGES)
     assert programs is not None
-    assert all(isinstance(judged(*pair), Replayed) for pair in zip(compiled, programs, strict=True))
+    assert all(is_right(*pair) for pair in zip(compiled, programs, strict=True))
 
 
 CHANGES = {

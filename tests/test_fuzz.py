@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from effort import share_of
 from fuzzing import BROKEN, TARGETS, Case, broken_by, drawn, saved
 
 
@@ -16,7 +17,7 @@ def test_what_broke_something_once_does_no_more(folder: Path) -> None:
 @pytest.mark.parametrize("target", TARGETS)
 def test_no_input_breaks_anything(target: str) -> None:
     """A few at a time; `benchmarks/fuzz.py` goes on as long as it is let."""
-    for case in drawn(TARGETS[target], 5):
+    for case in drawn(TARGETS[target], share_of(5)):
         assert broken_by(case) is None, case
 
 

@@ -13,6 +13,7 @@ from typing import Any
 
 import pytest
 from bag_support import odometry, rosbag2
+from effort import share_of
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from stepping import FLAG, X, from_text
@@ -141,7 +142,7 @@ def tightest(template: str, runs: Sequence[Sequence[tuple[float, float]]]) -> fl
 @pytest.mark.parametrize("template", THRESHOLDS)
 def test_a_threshold_is_the_tightest_with_which_all_runs_satisfy_the_property(tmp_path: Path, template: str) -> None:
     random = Random(template)
-    for case in range(2):
+    for case in range(share_of(2)):
         runs = [
             [(random.choice(LEVELS), random.choice(LEVELS)) for _ in range(random.randint(1, 4))]
             for _ in range(random.randint(1, 2))
@@ -388,7 +389,7 @@ def test_of_a_forall_that_starts_in_part_the_rest_is_told(tmp_path: Path) -> Non
 
 def test_a_search_ends_at_the_first_number_that_passes_wherever_the_hints_are() -> None:
     random = Random(5)
-    for _ in range(300):
+    for _ in range(share_of(300)):
         last = random.choice([0, 1, 2, 10, 2**62])
         first = random.randint(0, last + 1)
         search, looks = Search(0, last), 0
@@ -463,7 +464,7 @@ def test_all_recordings_pass_what_is_rounded_and_one_fails_what_is_tighter_than_
     tmp_path: Path, template: str
 ) -> None:
     chance = Random(template)
-    for case in range(2):
+    for case in range(share_of(2)):
         files = [
             recording(
                 tmp_path / f"{case}_{k}.csv",
@@ -491,7 +492,7 @@ def test_what_is_rounded_already_stays_and_only_gets_weaker() -> None:
     for direction, numbers in product((WEAKER, -WEAKER), (None, DOUBLES, SINGLES, Numbers(Kind.INTEGER, 0, 255))):
         role = Role.DURATION if numbers is None else Role.THRESHOLD
         among = values(role, direction, [numbers])
-        for _ in range(300):
+        for _ in range(share_of(300)):
             number = chance.randint(0, among.last)
             rounded = among.rounded(number)
             assert number <= rounded <= among.last

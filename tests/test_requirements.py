@@ -130,6 +130,7 @@ def test_a_page_tells_it(tmp_path: Path) -> None:
         assert f"<dd>{value}</dd>" in html
 
 
+@pytest.mark.usefixtures("quickly")
 def test_a_certificate_tells_it_and_is_the_same_without(tmp_path: Path) -> None:
     (tmp_path / "a.ltlc").write_text(SPEED + NAV)
     certificate, bare = (tmp_path / name for name in ("a.cert", "b.cert"))

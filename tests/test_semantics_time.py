@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from effort import share_of
 from timed import Draw, holds, letters_of, monitor_of, ordinary_atoms, word_of
 
 import ltlc
@@ -17,7 +18,7 @@ from ltlc.semantics.words import Word
 
 
 def test_the_encoding_on_clock_steps_means_what_the_property_means_on_instants() -> None:
-    for seed in range(1500):
+    for seed in range(share_of(1500)):
         draw = Draw(seed)
         property_, run = draw.property(most_clocks=9), draw.run()
         formula = encode(property_, EPISODE)
@@ -25,7 +26,7 @@ def test_the_encoding_on_clock_steps_means_what_the_property_means_on_instants()
 
 
 def test_the_last_verdict_of_a_monitor_is_what_the_run_means_unless_it_is_permanent() -> None:
-    for seed in range(250):
+    for seed in range(share_of(250)):
         draw = Draw(seed)
         property_ = draw.property()
         formula, monitor = encode(property_, EPISODE), monitor_of(property_)
@@ -36,7 +37,7 @@ def test_the_last_verdict_of_a_monitor_is_what_the_run_means_unless_it_is_perman
 
 def test_a_letter_that_is_repeated_changes_nothing() -> None:
     """The denotation may look at each instant any number of times: properties are next-free."""
-    for seed in range(500):
+    for seed in range(share_of(500)):
         draw = Draw(seed)
         property_, run = draw.property(most_clocks=9), draw.run()
         word = word_of(property_, run)
@@ -48,7 +49,7 @@ def test_a_run_is_a_word_of_the_reset_machine_which_moves_by_each_letter_in_one_
     def among(letters: Word, predicate: Formula) -> Word | None:
         return letters if finite.holds(predicate, letters) else None
 
-    for seed in range(500):
+    for seed in range(share_of(500)):
         draw = Draw(seed)
         formula = encode(draw.property(most_clocks=9), EPISODE)
         machine = ResetMachine(formula)
@@ -60,7 +61,7 @@ def test_a_run_is_a_word_of_the_reset_machine_which_moves_by_each_letter_in_one_
 
 
 def test_both_constructions_give_the_same_monitor() -> None:
-    for seed in range(150):
+    for seed in range(share_of(150)):
         property_ = Draw(seed).property()
         formula = encode(property_, EPISODE)
         alphabet = Alphabet(ordinary_atoms(formula))

@@ -59,11 +59,14 @@ class Mistaken(Tracker):
     change: Callable[[Case], Case] = lambda case: case
     asked: list[None] = field(default_factory=list, compare=False)
 
-    def cases(self, state: State, around: Scope) -> list[Case]:
+    def step(self, state: State, around: Scope, letter: Letter, passed: int) -> tuple[Case, Letter]:
         """Raises ValueError where the mistake makes a clock ring for ever."""
         self.asked.append(None)
         if len(self.asked) > MOST_ASKED:
             raise ValueError("a clock rings again and again")
+        return Tracker.step(self, state, around, letter, passed)
+
+    def cases(self, state: State, around: Scope) -> list[Case]:
         found = Tracker.cases(self, state, around)
         if state.phase is self.phase and self.number < len(found):
             found[self.number] = self.change(found[self.number])

@@ -10,6 +10,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import chain, islice, pairwise
 
+from ltlc.assurance import random_runs
 from ltlc.assurance.runs import (
     Agreement,
     Mismatch,
@@ -49,8 +50,6 @@ def cross_check(compiled: Compiled) -> Agreement | Mismatch:
     pairs = islice(residual_runs(compiled.monitor, compiled.formula, judge.letters), MOST_PLANNED_RUNS)
     planned = sorted(dict.fromkeys(chain(short_runs(judge.letters), transitions, pairs)), key=len)
     wrong = (mismatch for run in planned if (mismatch := judge.mismatch(run)))
-    from ltlc.assurance import random_runs  # a sixth of a build's start, not needed where time matters
-
     if mismatch := next(wrong, None) or random_runs.mismatch(judge.letters, judge.mismatch):
         return mismatch
     longest = max(len(planned[-1]), random_runs.LONGEST)

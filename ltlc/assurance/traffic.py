@@ -333,7 +333,7 @@ class Follower:
             return [*held, None, *self._hear(run, instant.time, now)]
         if run.time is None and self._settings.timeout is not None:
             self._end = min(self._end, instant.time + self._settings.timeout)
-        letter = step.letter - self._messages.keys() | self._told(now)
+        letter = step.letter.difference(self._messages).union(self._told(now))
         return [*held, *self._noted(run.step(instant.time, letter))]
 
     def _told(self, topics: Collection[str]) -> set[str]:

@@ -11,6 +11,8 @@ from __future__ import annotations
 import random
 from collections import Counter
 from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
 from itertools import combinations
 from typing import NamedTuple, Protocol
 
@@ -76,14 +78,15 @@ class Walk(NamedTuple):
     judged: list[list[Instant | None]]
 
 
-class Place(NamedTuple):
+@dataclass(frozen=True)
+class Place:
     """Where a walk has led: the clocks, and the state of the monitor."""
 
     walk: Observation
     run: TimedRun
     state: int
 
-    @property
+    @cached_property
     def clocks(self) -> Hashable:
         """The state, of each clock whether it expires at the next nanosecond, and which of two does first.
 
@@ -93,7 +96,7 @@ class Place(NamedTuple):
         apart = tuple(max(-2, min(2, one - other)) for one, other in combinations(moments, 2))
         return self.state, tuple(moment == self.walk.until + 1 for moment in moments), apart
 
-    @property
+    @cached_property
     def situation(self) -> Hashable:
         """All that matters of a place."""
         return self.clocks, self.run.letter, *self.run.states, self.run.time == self.walk.until

@@ -9,10 +9,11 @@ may take each of them (`reset_machine`).
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import Enum
 from typing import NamedTuple
 
+from ltlc.semantics import finite
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.ltl import TRUE, Formula, Not, conjunction
 from ltlc.semantics.timed_atoms import (
@@ -31,6 +32,7 @@ from ltlc.semantics.timed_atoms import (
     UntilScope,
     atoms_within,
 )
+from ltlc.semantics.words import Letter
 
 
 class Phase(Enum):
@@ -94,6 +96,10 @@ class Tracker:
     subject: Previously | Once | Historically | Since | Age | Clock
     atoms: tuple[str, ...]
     bounds: tuple[Nanoseconds, ...] = ()
+    _known: dict[tuple[State, Scope, Letter, int], tuple[Case, Letter]] = field(
+        default_factory=dict, init=False, repr=False, compare=False
+    )
+    """What `step` has found: runs ask the same again and again."""
 
     @property
     def initial(self) -> State:
@@ -103,6 +109,18 @@ class Tracker:
     def is_running(self, state: State) -> bool:
         """Whether some bound is yet to pass."""
         return state.phase is Phase.RUNNING and state.passed < len(self.bounds)
+
+    def step(self, state: State, around: Scope, letter: Letter, passed: int) -> tuple[Case, Letter]:
+        """What happens at an instant with `letter` at which so many bounds have passed, and its letter then."""
+        given = state, around, letter, passed
+        if (known := self._known.get(given)) is None:
+            (case,) = (
+                case
+                for case in self.cases(state, around)
+                if case.passed in (None, passed) and finite.holds(case.guard, (letter,))
+            )
+            known = self._known[given] = case, letter.difference(self.atoms).union(case.holding)
+        return known
 
     def cases(self, state: State, around: Scope) -> list[Case]:
         """What may happen at an instant after `state`; `around` is the scope that the clock belongs to."""

@@ -27,6 +27,7 @@ from contextlib import closing, contextmanager, nullcontext, suppress
 from decimal import Decimal
 from fractions import Fraction
 from functools import lru_cache, partial, reduce
+from operator import attrgetter
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -257,6 +258,12 @@ def topics_of(x: Json) -> set[str]:
     return found.union(*(part[key] for part in parts(x) for key in ("new", "message") if key in part))
 
 
+def getter(path: list[Json]) -> Callable[[Any], Any]:
+    """What takes the value at a path out of a message; None if there is none."""
+    is_plain = bool(path) and all(isinstance(step, str) for step in path)
+    return attrgetter(".".join(path)) if is_plain else partial(value_at, path=path)
+
+
 def value_at(value: Any, path: list[Json], around: Any = None) -> Any:
     """The value at a path, None if there is none; `around` is the message that has it as a field."""
     for depth, step in enumerate(path):
@@ -337,7 +344,8 @@ def type_text(of: Any, what: Any) -> str:
             return "uint8" if what[0] in ("byte", "octet", "char") else str(what[0])
         case "NAME":
             return str(what)
-    return f"{type_text(*what[0])}[{what[1] if of.name == 'ARRAY' else ''}]"
+        case _:
+            return f"{type_text(*what[0])}[{what[1] if of.name == 'ARRAY' else ''}]"
 
 
 def read_bag(reader: Any, head: Section, wanted: dict[str, dict[int, Json]]) -> Recording:
@@ -354,9 +362,9 @@ def read_bag(reader: Any, head: Section, wanted: dict[str, dict[int, Json]]) -> 
         if undefined := sorted(types - head.digests("definition").keys()):
             raise Refused(f"how messages are defined is not written: {', '.join(undefined)}")
         if name in wanted:
-            keeps = [(found.samples[what][1].append, each["path"]) for what, each in wanted[name].items()]
+            keeps = [(found.samples[what][1].append, getter(each["path"])) for what, each in wanted[name].items()]
             takers[id(connection)] = found.topics[name].append, keeps
-    first, last = math.inf, -math.inf
+    first, last = 2**63, -(2**63)
     for connection, time, raw in reader.messages():
         first, last = min(first, time), max(last, time)
         if id(connection) not in takers:
@@ -369,8 +377,8 @@ def read_bag(reader: Any, head: Section, wanted: dict[str, dict[int, Json]]) -> 
                 continue
         add(len(found.times))
         found.times.append(time)
-        for keep, path in keeps:
-            keep(value_at(message, path))
+        for keep, get in keeps:
+            keep(get(message))
     found.settle(head, None if by_header else (first, last))
     return found
 
@@ -464,7 +472,8 @@ def value_of(cell: Any, kind: str, index: int | None) -> Any:
             return float(np.float32(float(cell)))
         case "float64":
             return float(cell)
-    return int(Decimal(cell))
+        case _:
+            return int(Decimal(cell))
 
 
 # Values and functions ------------------------------------------------------------------------------------------------
@@ -528,9 +537,10 @@ def called(name: str, given: list[Array], of: list[Json]) -> Array:
             is_better = np.less if name == "min" else np.greater
             best = reduce(lambda one, other: np.where(is_better(other, one), other, one), given)
             return np.where(reduce(np.logical_or, map(is_nan, given)), math.nan, best)
-    if name not in FUNCTIONS:
-        raise NotCovered(f"the function {name}")
-    return FUNCTIONS[name](*(each.astype(np.float64) for each in given))
+        case _ if name in FUNCTIONS:
+            return FUNCTIONS[name](*(each.astype(np.float64) for each in given))
+        case _:
+            raise NotCovered(f"the function {name}")
 
 
 def pointwise(function: Callable[..., float]) -> Callable[..., Array]:
@@ -651,7 +661,8 @@ def of_array(name: str, array: Array) -> Any:
             return total(known.astype(np.float64).tolist()) / len(known)
         case "median":
             return median(known.astype(np.float64).tolist())
-    raise NotCovered(f"the function {name} of an array")
+        case _:
+            raise NotCovered(f"the function {name} of an array")
 
 
 def total(values: list[float]) -> float:
@@ -715,7 +726,7 @@ class Values:
         places = np.unique(np.concatenate([np.zeros(0, np.int64), *(recorded.topics[name] for name in topics)]))
         own = np.array([] if session is None else [session], np.int64)
         self.recorded, self.is_ticks = recorded, rate is not None
-        self.times = np.append(own, recorded.times[places])
+        self.times: Array = np.append(own, recorded.times[places])
         self.seen = np.append(np.full(len(own), -1), places).searchsorted(np.arange(len(recorded.times)))
         """At which instant each message is seen; too large a number: at none."""
         if rate is not None and len(self.times):
@@ -784,14 +795,15 @@ class Values:
             case {"message": topics}:
                 return Series(self.heard(topics, now=True), fresh=self.heard(topics))
             case {"opening": of, "scope": number}:
-                now = np.broadcast_to(value(of).now, self.count)[self.taken[number]]
-                return Series(now, value(of).known, value(of).fresh)
+                everywhere = np.broadcast_to(value(of).now, self.count)
+                return Series(everywhere[self.taken[number]], value(of).known, value(of).fresh)
             case {"instead": constant, "of": of}:
                 first = [self.heard([topic]) for topic in x.get("news", [])]
                 is_late = reduce(np.logical_and, first) & ~value(of).known if first else NO
                 now = np.where(value(of).known, value(of).now, value(constant).now)
                 return Series(now, fresh=value(of).fresh, wrong=value(of).wrong | is_late)
-        return self.latest(x)
+            case _:
+                return self.latest(x)
 
     def latest(self, x: Json) -> Series:
         """What is read of the samples of a signal."""
@@ -862,7 +874,7 @@ class Values:
                 shape = [-1 if n == axis else 1 for n in range(len(sizes))]
                 given[id(part)] = Series(array[: sizes[axis]].reshape(shape))
             found = self.value(predicate, given)
-            return np.count_nonzero(np.broadcast_to(found.now & ~found.wrong, sizes))
+            return int(np.count_nonzero(np.broadcast_to(found.now & ~found.wrong, sizes)))
 
         return self.one_by_one(count, *map(self.value, [*arrays, *beside]))
 
@@ -1018,16 +1030,18 @@ def check_document(document: Document, path: Path, say: Callable[[str], None]) -
     head, claims, codes = document.head, document.claims, [0]
     for each in document.not_covered:
         say(": nothing is claimed: ".join(each.split(": ", 1)))
+    if not claims:
+        return 0
     with answered("", say, codes):
-        if ("stamp" in head.said or "timeout" in head.said) and claims and document.not_covered:
+        if ("stamp" in head.said or "timeout" in head.said) and document.not_covered:
             raise Refused("something is claimed of some properties only, though the run depends on all")
-        recorded = read(path, document) if claims else None
-        ends = end_of(document, recorded) if recorded else 0
-    for claim in claims if codes == [0] else []:
-        label = claim.one("property")
-        with answered(f"{label}: ", say, codes):
-            counts = check_claim(claim, recorded, head, ends)
-            say(f"{label}: the letters are as stated; {counts}")
+        recorded = read(path, document)
+        ends = end_of(document, recorded)
+        for claim in claims:
+            label = claim.one("property")
+            with answered(f"{label}: ", say, codes):
+                counts = check_claim(claim, recorded, head, ends)
+                say(f"{label}: the letters are as stated; {counts}")
     return 1 if 1 in codes else max(codes)
 
 

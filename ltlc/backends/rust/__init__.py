@@ -14,9 +14,10 @@ from ltlc.backends import c
 from ltlc.backends.inputs import origin
 from ltlc.backends.names import class_name
 from ltlc.backends.rust.code import comment
+from ltlc.backends.rust.expressions import verdict_name
 from ltlc.backends.rust.functions import FUNCTIONS, ONLY_IN_C, texts
 from ltlc.backends.rust.names import spelled, type_names
-from ltlc.backends.rust.printer import Printer, verdict_name
+from ltlc.backends.rust.printer import Printer
 from ltlc.backends.rust.trees import Trees
 from ltlc.backends.rust.types import Types, type_text
 from ltlc.backends.spelling import NotInTargetError

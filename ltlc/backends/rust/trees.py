@@ -80,6 +80,12 @@ class Trees:
             case _:
                 return None
 
+    def called(self, name: str) -> str:
+        """What a function is called in Rust: one of a property or a table without the name of that."""
+        owner = self.owner(name)
+        called = name if "static" in self.functions[name].decl.storage else self.short(name)
+        return called if owner == "monitors" else called.removeprefix(f"{owner}_")
+
     def about(self, function: str) -> list[str]:
         """The paragraphs of the comment above a function, or above where it is declared for others."""
         return self._above(self._prototypes.get(function) or self.functions[function])

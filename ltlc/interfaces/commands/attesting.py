@@ -12,7 +12,7 @@ from ltlc.assurance.afresh.files import UnusableError
 from ltlc.assurance.evidence.document import printed
 from ltlc.assurance.evidence.statement import Result, State, evidence_file, statements
 from ltlc.base.files import write_all
-from ltlc.interfaces.commands.common import OK, overwritten, unusable, unwritable
+from ltlc.interfaces.commands.common import OK, overwritten, unwritable
 from ltlc.specification.specification import Specification
 
 NAMESPACE = "ltlc-evidence"
@@ -58,7 +58,8 @@ def refuse_unusable(options: argparse.Namespace) -> None:
 def attest(options: argparse.Namespace, results: Sequence[Result], state: State, specification: Specification) -> int:
     """Write what was asked for about evidence, whose `state` the checks have found; the exit code of that alone.
 
-    Nothing is stated or signed of what is not accepted, and no signature stays beside what it is not of.
+    Nothing is stated or signed of what is not accepted, and no signature stays beside what it is not of. Raises
+    UnusableError, and writes nothing, if something cannot be signed.
     """
     text = "".join(printed(document) for document, _ in results)  # as it was read
     file, written = evidence_file(options.evidence[0], text.encode()), dict[Path, bytes | str]()
@@ -72,31 +73,31 @@ def attest(options: argparse.Namespace, results: Sequence[Result], state: State,
         written[options.page] = page(file, results, state, texts, english)
     if options.statement and state is State.ACCEPTED:
         written[options.statement] = statements(file, results)
+    if options.sign and state is State.ACCEPTED:
+        written |= {_signature(path): _signed(options.sign, content) for path, content in written.items()}
     try:
-        for path in written:
-            _signature(path).unlink(missing_ok=True)
+        for path in {*map(_signature, written)} - written.keys():
+            path.unlink(missing_ok=True)
         write_all(written)
     except OSError as error:
         return unwritable(error.filename, error)
-    if state is not State.ACCEPTED:
-        if options.statement or options.sign:
-            print("ltlc: nothing is stated or signed, as not all checks accept all claims", file=sys.stderr)
-        return OK
-    return _signed(options.sign, list(written)) if options.sign else OK
-
-
-def _signed(key: Path, paths: Sequence[Path]) -> int:
-    """Sign the files at `paths`, each beside itself; the exit code."""
-    for path in paths:
-        command = ["ssh-keygen", "-Y", "sign", "-n", NAMESPACE, "-f", str(key), str(path)]
-        try:
-            done = subprocess.run(command, capture_output=True, text=True, errors="replace", check=False)
-        except OSError:
-            return unusable("ssh-keygen is not installed, which signs (Debian: openssh-client)")
-        if done.returncode:
-            why = done.stderr.strip().rpartition("\n")[2] or "ssh-keygen failed"
-            return unusable(f"{path} is not signed: {why}")
+    if state is not State.ACCEPTED and (options.statement or options.sign):
+        print("ltlc: nothing is stated or signed, as not all checks accept all claims", file=sys.stderr)
     return OK
+
+
+def _signed(key: Path, content: bytes | str) -> bytes:
+    """The signature of what is written. Raises UnusableError."""
+    command = ["ssh-keygen", "-Y", "sign", "-n", NAMESPACE, "-f", str(key)]
+    text = content.encode() if isinstance(content, str) else content
+    try:
+        done = subprocess.run(command, input=text, capture_output=True, check=False)
+    except OSError:
+        raise UnusableError("ssh-keygen is not installed, which signs (Debian: openssh-client)") from None
+    if done.returncode:
+        why = done.stderr.decode(errors="replace").strip().rpartition("\n")[2] or "ssh-keygen failed"
+        raise UnusableError(f"nothing is written, as it cannot be signed: {why}")
+    return done.stdout
 
 
 def _signature(path: Path) -> Path:

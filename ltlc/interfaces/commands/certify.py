@@ -15,7 +15,7 @@ from pathlib import Path
 from ltlc.assurance import evidence
 from ltlc.assurance.afresh.files import Code, UnusableError, code_at, text_at
 from ltlc.assurance.certificates import Checked, Subject, Unreadable, check_certificates
-from ltlc.assurance.evidence.document import digest
+from ltlc.assurance.evidence.document import NotCovered, digest
 from ltlc.assurance.evidence.statement import State
 from ltlc.automata import Budget, SpotMissing
 from ltlc.base.diagnostics import Diagnostic
@@ -25,10 +25,11 @@ from ltlc.frontend.language.suppression import unsuppressed
 from ltlc.interfaces.commands import arguments
 from ltlc.interfaces.commands.attesting import add_outputs, attest, refuse_unusable
 from ltlc.interfaces.commands.checked_evidence import check_evidence, documents_at
-from ltlc.interfaces.commands.common import FINDING, OK, UNDECIDED, failure, report, unusable
+from ltlc.interfaces.commands.common import FINDING, OK, UNDECIDED, UNUSABLE, failure, report, unusable
 from ltlc.interfaces.commands.emitted_code import is_code_of
 from ltlc.interfaces.commands.followed_programs import are_followed
 from ltlc.interfaces.commands.progress import progress, saying
+from ltlc.monitoring.campaigns.places import find
 from ltlc.semantics.certificate_text import in_words
 from ltlc.semantics.encodings import ENCODINGS, Encoding, encode
 from ltlc.semantics.ltl import TRUE
@@ -85,7 +86,12 @@ class _Reader(argparse.Action):
 def run(options: argparse.Namespace) -> int:
     """Report what is certified, and what is checked by the certificates; 0 if all is right."""
     source = read_source(options.specification)
-    encoding, recordings = ENCODINGS[options.encoding], (options.evidence or [])[1:]
+    encoding = ENCODINGS[options.encoding]
+    places = find([str(path) for path in (options.evidence or [])[1:]])
+    report(places.problems)
+    if places.problems:
+        return UNUSABLE
+    recordings = places.paths
     specification, diagnostics = (
         (None, [source])
         if isinstance(source, Diagnostic)
@@ -95,12 +101,14 @@ def run(options: argparse.Namespace) -> int:
     if specification is None:
         return failure(diagnostics)
     try:
-        return _certify(options, specification, encoding)
+        return _certify(options, specification, encoding, recordings)
     except (UnusableError, SpotMissing) as error:
         return unusable(str(error))
 
 
-def _certify(options: argparse.Namespace, specification: Specification, encoding: Encoding) -> int:
+def _certify(
+    options: argparse.Namespace, specification: Specification, encoding: Encoding, recordings: Sequence[Path]
+) -> int:
     """Say of each property whether its certificate proves its monitor right, and check what was asked for."""
     refuse_unusable(options)
     documents = documents_at(options.evidence[0]) if options.evidence else ()
@@ -126,10 +134,12 @@ def _certify(options: argparse.Namespace, specification: Specification, encoding
     if documents:
         entries = {each.label: each.certified for each in checked if each.certified is not None}
         certificates = digest(text), entries
-        found, claims = check_evidence(documents, specification, certificates, options.evidence[1:], options.quiet)
+        found, claims = check_evidence(documents, specification, certificates, recordings, options.quiet)
         state = {OK: State.ACCEPTED, UNDECIDED: State.UNCHECKED}.get(found, State.REFUSED)
         results = list(zip(documents, claims, strict=True))
         found = max(found, attest(options, results, state, specification))
+        if found == OK and any(isinstance(each, NotCovered) for document in documents for each in document.properties):
+            found = UNDECIDED
     return found if is_right else FINDING
 
 
