@@ -76,6 +76,17 @@ MAX_HISTORY = 99_999
 """How many samples back a specification can look: they are all kept in memory."""
 
 
+def _never_has_a_value(expression: Expression) -> bool:
+    """Whether it has none, whatever it is computed from."""
+    match expression:
+        case Number(constant):
+            return math.isnan(constant)
+        case Call(Function.MOD, (_, Number(0.0))):
+            return True
+        case _:
+            return False
+
+
 def value(checker: Checker, node: syntax.Node) -> Value | None:
     """The value of `node`, of an array where that is wanted each element; None if an error was reported."""
     found = whole(checker, node)
@@ -90,7 +101,7 @@ def whole(checker: Checker, node: syntax.Node) -> Value | None:
     if isinstance(found, Message):
         no_field(checker, node.span, found)
         return None
-    if any(isinstance(e, Number) and math.isnan(e.value) for e in expressions(found)):
+    if any(map(_never_has_a_value, expressions(found))):
         message = f"`{checker.written(node)}` has no value: it is not a number"
         checker.report("LTL213", node.span, message)
         return None
