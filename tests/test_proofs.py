@@ -7,7 +7,7 @@ import re
 import shutil
 import subprocess
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
@@ -16,6 +16,17 @@ import pytest
 from cases import TABLE
 from control_mutants import control_mutants
 from effort import share_of
+from evidencing import (
+    OPENINGS,
+    SLICES,
+    entries_of,
+    evidence_of,
+    judge_of,
+    random_rows,
+    said_of,
+    specification,
+    write_bag,
+)
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from judged_cases import TABLE as JUDGED_TABLE
@@ -27,6 +38,10 @@ from test_semantics_certificate_time import TEXT as TIMED
 from timed import Draw, ordinary_atoms
 from timed_cases import TABLE as TIMED_TABLE
 
+from ltlc.assurance.evidence.checked import checked
+from ltlc.assurance.evidence.document import Claim, Document, Summed, digest, printed
+from ltlc.assurance.evidence.parsing import parsed
+from ltlc.assurance.evidence.reader import Read
 from ltlc.assurance.pairs import pairs_of
 from ltlc.cli import main
 from ltlc.semantics.alphabet import Alphabet
@@ -42,6 +57,7 @@ from ltlc.semantics.lasso import holds_on_lasso
 from ltlc.semantics.ltl import TRUE, And, Atom, Not
 from ltlc.semantics.properties import Property
 from ltlc.semantics.reset_machine import ResetMachine
+from ltlc.semantics.verdicts import Verdict
 from ltlc.semantics.words import Lasso
 
 SPEED = Atom("speed > 2")
@@ -434,6 +450,45 @@ def test_the_extracted_judge_notices_every_byte_that_is_changed(certify: Path, t
         new = "1" if old == "0" else "0"
         by = new if place % 4 else ""
         assert judged(certify, tmp_path, certificates, document[:place] + by + document[place + 1 :])[0] != 0
+
+
+def edits(claim: Claim) -> Iterator[Claim]:
+    """The claim with other scopes, slices or verdicts."""
+    yield replace(claim, verdict=Verdict.PRESUMABLY_VIOLATED)
+    if claim.scopes:
+        [first, *others] = claim.scopes
+        yield replace(claim, scopes=(first._replace(number=first.number + 1), *others))
+        assert not isinstance(claim.letters, Summed)
+        scope = len(claim.atoms)
+        for n, line in enumerate(claim.letters):
+            flipped = line._replace(atoms=tuple(sorted({*line.atoms} ^ {scope})))
+            yield replace(claim, letters=(*claim.letters[:n], flipped, *claim.letters[n + 1 :]))
+    for n, each in enumerate(claim.slices):
+        before, after = claim.slices[:n], claim.slices[n + 1 :]
+        yield replace(claim, slices=(*before, *after))
+        yield replace(claim, slices=(*before, each, each, *after))
+        yield replace(claim, slices=(*before, replace(each, verdict=Verdict.PRESUMABLY_VIOLATED), *after))
+        yield replace(claim, slices=(*before, replace(each, until=each.until - 1, decided=each.until - 1), *after))
+
+
+def test_both_judges_say_the_same_of_scopes_and_slices_that_are_edited(certify: Path, tmp_path: Path) -> None:
+    text, answers = specification([*OPENINGS, *SLICES]), Counter[bool]()
+    bag = write_bag(tmp_path / "bag", random_rows(random.Random(4)))
+    said_of(evidence_of(text, bag), bag, fill=tmp_path / "filled")
+    filled = parsed((tmp_path / "filled").read_text(encoding="utf-8"))
+    assert isinstance(filled, Document)
+    entries = entries_of(text)
+    certificates = to_text([*entries.values()])
+    head = replace(filled.head, certificates=digest(certificates))
+    claims = [each for each in filled.properties if isinstance(each, Claim)]
+    assert judged(certify, tmp_path, certificates, printed(Document(head, tuple(claims))))[0] == 0
+    for claim in (edit for each in claims for edit in edits(each)):
+        document = Document(head, (claim,))
+        [found] = checked(document, judge_of(text).specification, entries, Read(("",), document))
+        is_right = found.checks[0].refusal is None
+        assert judged(certify, tmp_path, certificates, printed(document))[0] == (0 if is_right else 1), claim
+        answers[is_right] += 1
+    assert answers[False] > 40
 
 
 def test_the_extracted_judge_takes_no_other_certificates_than_those_that_are_named(
