@@ -68,7 +68,7 @@ def _difference(
     if verdict in PERMANENT and decided is not None and decided != changes[-1][0]:
         return f"{verdict} at {decided}, but {_text(expected)}"
     if found.changes is not None:
-        shown = _last_of_each_time if found.shows_last else list
+        shown = last_of_each_time if found.shows_last else list
         if not _same(shown(changes), shown(found.changes), is_near):
             return f"changes {list(found.changes)}, but {_text(expected)}"
     if verdict in PERMANENT:
@@ -90,7 +90,8 @@ def _same(wanted: Sequence[tuple[int, str]], found: Sequence[tuple[int, str]], i
     return [w for w in wanted if w[0] < end - 1] == [f for f in found if f[0] < end - 1] and wanted[-1] == found[-1]
 
 
-def _last_of_each_time(changes: Sequence[tuple[int, str]]) -> list[tuple[int, str]]:
+def last_of_each_time(changes: Sequence[tuple[int, str]]) -> list[tuple[int, str]]:
+    """What the changes of verdict are where those at one time are seen as one."""
     found: list[tuple[int, str]] = []
     for time, verdict in dict(changes).items():
         if not found or found[-1][1] != verdict:

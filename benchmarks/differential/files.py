@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import io
 import json
 import sys
 from collections.abc import Callable, Mapping, Sequence
@@ -54,16 +55,17 @@ def _message(topic: str, values: Mapping[str, Any]) -> Any:
         parts = [(name.split(".", 1)[1].rpartition("."), value) for name, value in values.items()]
         return made(type_, **{f"{PLACES[part]}__{axis}": value for (part, _, axis), value in parts})
     if topic == "/marks":
-        found = made(type_)
-        for id_, kind, locked in zip(values["ids"], values["kinds"], values["locked"], strict=True):
+        found, [length] = made(type_), {len(each) for name, each in values.items() if name != "marks"} or {0}
+        blank = {"ids": (0,) * length, "kinds": ("",) * length, "locked": (False,) * length, **values}
+        for id_, kind, locked in zip(blank["ids"], blank["kinds"], blank["locked"], strict=True):
             found.markers.append(made("visualization_msgs/msg/Marker", id=id_, ns=kind, frame_locked=locked))
         return found
     if topic == "/bump":
         return made(type_)
     if topic == "/part":
-        return made(type_, id=values["key"], type=values["part"], intensity=values["level"])
+        return made(type_, id=values.get("key", 0), type=values.get("part", 0), intensity=values.get("level", 0.0))
     if topic == "/pair":
-        return made(type_, x=values["pair_x"], y=values["pair_y"])
+        return made(type_, x=values.get("pair_x", 0.0), y=values.get("pair_y", 0.0))
     [value] = values.values()
     if topic in KINDS:
         return made(type_, **{"ranges" if topic == "/scan" else "data": np.array(value, KINDS[topic])})
@@ -85,10 +87,13 @@ def bag_forms(rows: Sequence[Row]) -> list[str]:
 
 def write(form: str, folder: Path, of: Monitors, recording: Recording) -> Path:
     """A file with the rows of a recording."""
-    if is_bag(form):
-        sent = [Sent(t, TYPES[t], row.time, _message(t, v)) for row in recording.rows for t, v in row.messages.items()]
-        return FORMS[form](folder, sent)
-    return TABLES[form](folder, of, recording)
+    return write_bag(form, folder, recording) if is_bag(form) else TABLES[form](folder, of, recording)
+
+
+def write_bag(form: str, folder: Path, recording: Recording) -> Path:
+    """A bag with the messages of a recording."""
+    sent = [Sent(t, TYPES[t], row.time, _message(t, v)) for row in recording.rows for t, v in row.messages.items()]
+    return FORMS[form](folder, sent)
 
 
 def seconds(time: int) -> str:
@@ -104,14 +109,20 @@ def _cell(value: Any) -> str:
 
 def write_csv(folder: Path, of: Monitors, recording: Recording) -> Path:
     """Cells by signal."""
-    path, names = folder / "run.csv", list(of.signals)
-    with path.open("w", newline="") as file:
-        writer = csv.writer(file)
-        writer.writerow(["time", *names])
-        for row in recording.rows:
-            cells = of.cells(row)
-            writer.writerow([seconds(row.time), *(_cell(cells[n]) if n in cells else "" for n in names)])
+    path = folder / "run.csv"
+    path.write_text(csv_text(list(of.signals), recording), newline="")
     return path
+
+
+def csv_text(names: Sequence[str], recording: Recording) -> str:
+    """A table with a column for each of the signals with these names."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(["time", *names])
+    for row in recording.rows:
+        cells = {n: v for values in row.messages.values() for n, v in values.items()}
+        writer.writerow([seconds(row.time), *(_cell(cells[n]) if n in cells else "" for n in names)])
+    return text.getvalue()
 
 
 def _json_lines(folder: Path, of: Monitors, recording: Recording) -> Path:

@@ -72,10 +72,9 @@ def _size(of: Difference) -> tuple[int, int, int]:
 def _smaller(of: Difference) -> Iterator[Difference]:
     """Smaller cases, those that save most first."""
     yield from _without_properties(of)
-    yield from _without_rows(of)
-    yield from _without_topics(of)
+    yield from (replace(of, recording=each) for each in smaller_recordings(of.recording))
     yield from _without_times(of)
-    yield from _smaller_texts(of)
+    yield from (replace(of, text=each) for each in smaller_texts(of.text))
 
 
 def _without_properties(of: Difference) -> Iterator[Difference]:
@@ -92,29 +91,28 @@ def _without_properties(of: Difference) -> Iterator[Difference]:
         yield replace(of, text="\n".join(each for each in lines if each != line) + "\n")
 
 
-def _without_rows(of: Difference) -> Iterator[Difference]:
-    rows = list(of.recording.rows)
+def smaller_recordings(of: Recording) -> Iterator[Recording]:
+    """Recordings without some rows, without a topic, or without one message of a row."""
+    rows = list(of.rows)
     size = len(rows) // 2
     while size:
         for start in range(0, len(rows), size):
-            kept = rows[:start] + rows[start + size :]
-            if kept:
-                yield replace(of, recording=_recording(of.recording, kept))
+            yield from _recording(of, rows[:start] + rows[start + size :])
         size //= 2
-
-
-def _without_topics(of: Difference) -> Iterator[Difference]:
-    rows = of.recording.rows
     for topic in sorted({topic for row in rows for topic in row.messages}):
         kept = [Row(row.time, {t: v for t, v in row.messages.items() if t != topic}) for row in rows]
-        kept = [row for row in kept if row.messages]
-        if kept:
-            yield replace(of, recording=_recording(of.recording, kept))
+        yield from _recording(of, [row for row in kept if row.messages])
     for number, row in enumerate(rows):
         if len(row.messages) > 1:
             for topic in row.messages:
                 less = Row(row.time, {t: v for t, v in row.messages.items() if t != topic})
-                yield replace(of, recording=_recording(of.recording, [*rows[:number], less, *rows[number + 1 :]]))
+                yield from _recording(of, [*rows[:number], less, *rows[number + 1 :]])
+
+
+def _recording(of: Recording, rows: list[Row]) -> Iterator[Recording]:
+    """A recording of some rows, if there are any."""
+    if rows:
+        yield Recording(rows, rows[0].time, max(of.end, rows[-1].time))
 
 
 def _without_times(of: Difference) -> Iterator[Difference]:
@@ -124,13 +122,9 @@ def _without_times(of: Difference) -> Iterator[Difference]:
         yield replace(of, until=None)
 
 
-def _recording(of: Recording, rows: list[Row]) -> Recording:
-    return Recording(rows, rows[0].time, max(of.end, rows[-1].time))
-
-
-def _smaller_texts(of: Difference) -> Iterator[Difference]:
-    """A part of an expression in the place of the whole."""
-    tree, problems = parse(Source("props.txt", of.text))
+def smaller_texts(text: str) -> Iterator[str]:
+    """A part of an expression in the place of the whole, or no bound."""
+    tree, problems = parse(Source("props.txt", text))
     if problems:
         return
     for command in tree.commands:
@@ -139,11 +133,11 @@ def _smaller_texts(of: Difference) -> Iterator[Difference]:
                 for part in list(s.walk(node))[1:]:
                     inside = part[0].span
                     if node is not command and not isinstance(part[0], s.Bound):
-                        text = of.text[inside.start : inside.end]
-                        yield replace(of, text=_put(of.text, node, f"({text})"))
-                        yield replace(of, text=_put(of.text, node, text))
+                        instead = text[inside.start : inside.end]
+                        yield _put(text, node, f"({instead})")
+                        yield _put(text, node, instead)
                 if isinstance(node, s.Temporal | s.Past) and node.bound is not None:
-                    yield replace(of, text=_put(of.text, node.bound, ""))
+                    yield _put(text, node.bound, "")
 
 
 def _put(text: str, node: s.Node, instead: str) -> str:
