@@ -180,6 +180,16 @@ def test_ids_that_time_decides_at_once_are_named_in_their_order_and_by_a_message
         assert list(slices.ids.violated) == order
 
 
+def test_time_may_open_an_obligation_after_the_last_message_of_a_block() -> None:
+    rows: list[Row] = [(0, "/track", {"id": 1.0, "dist": 1.0}), (90, "/odom", {"v": 0.0})]
+    for seed in range(8):
+        text = "p: each g of id: always (age(dist) > 30 ns implies eventually new dist)"
+        reference, fast = both(text, rows, random.Random(seed))
+        assert not fast.ways[0].because
+        found = [(one.tracks[0].open_since, one.sliced[0].owed()[0].since.time) for one in (fast.session, reference)]
+        assert found[0] == found[1]
+
+
 def test_many_slices_take_what_they_share_in_parts(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(elements, "MOST", 20)
     chance = random.Random(2)

@@ -290,14 +290,12 @@ class BySlices:
         opened = np.concatenate([np.empty(0, np.int64), *taken.opened])
         if len(opened) < self._owed:
             return None
-        rows = taken.messages.rows
+        rows = np.append(taken.messages.rows, taken.messages.end)  # time may open one after all messages
         until = int(rows.searchsorted(rows[opened.min()], "right"))
         found = [(np.array([key]), np.array([time]), np.array([by])) for (key, time), by in taken.changes]
         found += chain.from_iterable(map(partial(self._changes, taken, until), taken.parts))
         keys, times, changes = (np.concatenate(column) for column in zip(*found, strict=True))
-        at = keys >> 1
-        in_rows = np.where(at < len(rows), rows.take(at, mode="clip"), taken.messages.end)
-        keys = 2 * in_rows + (keys & 1)
+        keys = 2 * rows[keys >> 1] + (keys & 1)
         order = np.lexsort((times, keys))
         keys, times, counts = keys[order], times[order], taken.owed + changes[order].cumsum()
         is_last = np.append((keys[1:] != keys[:-1]) | (times[1:] != times[:-1]), True)
