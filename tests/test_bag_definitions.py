@@ -132,6 +132,13 @@ def test_a_type_of_an_unknown_package_is_not_taken_for_another_misspelt(
     assert "did you mean `rcl_interfaces/msg/Log`?" in capsys.readouterr().err
 
 
+def test_a_type_of_a_bag_that_is_nearly_one_of_ros_is_also_answered_with_how_to_add_it(
+    spec: Spec, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["check", spec('decl text /text Strings.string_value\nnever text == ""\n')]) == 1
+    assert "did you mean `String`? Otherwise, `--msg-path` adds the messages of" in capsys.readouterr().err
+
+
 def test_a_second_recording_may_be_the_one_that_defines_a_type(tmp_path: Path, spec: Spec) -> None:
     first = mcap(tmp_path / "a.mcap", [odometry(SECOND + n) for n in range(3)])
     second = mcap(tmp_path / "b.mcap", levels())

@@ -443,6 +443,7 @@ def test_a_file_that_the_metadata_does_not_name_is_said_to_be_unread(tmp_path: P
     [
         ("v /odm nav_msgs/Odometry.twist.twist.linear.x", "has no topic `/odm`", "did you mean `/odom`?"),
         ("v /elsewhere nav_msgs/Odometry.twist.twist.linear.x", "has no topic", "its topics are `/odom`, `/cmd`"),
+        ("v /elsewhere geometry_msgs/Twist.linear.x", "has no topic", "its topics are `/cmd`, `/odom`"),
         ("v ~/odom nav_msgs/Odometry.twist.twist.linear.x", "has no topic", "a private topic is recorded"),
         ("v /odom nav_msgs/Path.poses[0].pose.position.x", "are `nav_msgs/msg/Odometry` in the recording", "declare"),
     ],

@@ -148,6 +148,18 @@ def test_of_a_property_that_reads_the_past_the_first_violation_is_looked_for_onl
     assert report.document()["properties"][0]["violations"] is None
 
 
+@pytest.mark.parametrize(
+    ("text", "reads"),
+    [
+        ("never (a and previously b)", "the past"),
+        ("after_until a, not a, a == @{b, opening}", "values at openings"),
+    ],
+)
+def test_text_says_why_later_violations_are_not_looked_for(tmp_path: Path, text: str, reads: str) -> None:
+    report = judged(tmp_path, text, [(0, False, True), (10, True, False), (20, False, False)])
+    assert f"looked for: the property reads {reads}." in report.text(with_all=True)
+
+
 def test_json_has_when_each_violation_was_and_how_long_it_lasted(tmp_path: Path) -> None:
     report = judged(tmp_path, "never a", [(0, True, False), (10, False, False), (20, True, False), (25, True, False)])
     [found] = report.document()["properties"]

@@ -88,25 +88,30 @@ def message_type(source: Source, name: syntax.Word, types: MessageTypes) -> str 
         return diagnostic(
             "LTL202", source, name.span, message, help=write(*(writing(name.span, full) for full in found))
         )
-    near = _near(name, types) or "`--msg-path` adds the messages of a package or a bag"
-    first, *rest = name.text.split("/")
-    if rest and types.find(first):
-        near = write(writing(name.span, ".".join([first, *rest])))
-    help = _made_of(name.text, types) or near
+    help = _made_of(name.text, types) or _with_path(name, types) or _near(name, types)
     return diagnostic(
         "LTL201", source, name.span, f"no known package defines the message type `{name.text}`", help=help
     )
 
 
-def _near(name: syntax.Word, types: MessageTypes) -> Help | None:
-    """A name that may be meant; none if the whole package is unknown: its messages are not misspellings of others."""
+def _with_path(name: syntax.Word, types: MessageTypes) -> Help | None:
+    """The same name with a path after it, if `/` stands where `.` has to."""
+    first, *rest = name.text.split("/")
+    return write(writing(name.span, ".".join([first, *rest]))) if rest and types.find(first) else None
+
+
+def _near(name: syntax.Word, types: MessageTypes) -> Help:
+    """A name that may be meant, unless the whole package is unknown; otherwise, how to add messages."""
+    adding = "`--msg-path` adds the messages of a package or a bag"
     package, slash, _ = name.text.partition("/")
-    if not slash:
-        return respell(name.span, name.text, types.short_names)
     packages = {full.partition("/")[0] for full in types.messages}
-    if package not in packages and not any(is_slip(package, known) for known in packages):
-        return None
-    return respell(name.span, _full(name.text), types.messages)
+    if not slash:
+        near = respell(name.span, name.text, types.short_names)
+    elif package in packages or any(is_slip(package, known) for known in packages):
+        near = respell(name.span, _full(name.text), types.messages)
+    else:
+        near = None
+    return Help(adding) if near is None else Help(f"{near.text} Otherwise, {adding}", near.fixes)
 
 
 def _made_of(name: str, types: MessageTypes) -> str:

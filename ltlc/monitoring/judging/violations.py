@@ -73,7 +73,8 @@ def violations_text(session: Session, track: Track) -> str:
     """A line for each violation of a property: when it was, and for how long."""
     found = all_violations(track)
     if found is None or session.time is None:
-        return "Only the first violation of this property is looked for.\n"
+        reads = "values at openings" if track.property.kept else "the past"
+        return f"Only the first violation is looked for: the property reads {reads}.\n"
     scale = session.scale.among(each.moment.time for each in found)
     count = f"{counted(len(found), 'violation')}{' or more' if len(found) >= MOST else ''}"
     lines = [f"{count}:", *(f"  {violation_text(scale, each, session.time)}" for each in found)]

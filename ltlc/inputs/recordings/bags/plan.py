@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ltlc.base.nearest import did_you_mean
+from ltlc.base.nearest import did_you_mean, nearest_first
 from ltlc.inputs.messages.definitions import JAZZY, FieldType, MessageTypes
 from ltlc.inputs.messages.texts import full_name
 from ltlc.inputs.recordings.bags import cdr
@@ -200,7 +200,7 @@ class Plan:
         """The types of the messages on the topic of `field`, if they are those of the specification."""
         topic = self._topics.get(field.topic)
         if topic is None:
-            return Absence(f"the recording has no topic `{field.topic}`", self._other_topics(field.topic))
+            return Absence(f"the recording has no topic `{field.topic}`", self._other_topics(field))
         if topic.type != field.message:
             reason = f"the messages on `{field.topic}` are `{topic.type}` in the recording, not `{field.message}`"
             return Absence(reason, "declare the signal with the type in the recording")
@@ -223,12 +223,15 @@ class Plan:
     def _without_recording(self) -> MessageTypes:
         return merged(self._others)
 
-    def _other_topics(self, name: str) -> str:
-        if name.startswith("~/"):
+    def _other_topics(self, field: Field) -> str:
+        """Which topic may be meant: if no name is near, those with messages of its type come first."""
+        if field.topic.startswith("~/"):
             return "a private topic is recorded under the name of its node: write it as `/node/topic`"
-        near = did_you_mean(name, self._topics)
-        listed = ", ".join(f"`{topic}`" for topic in list(self._topics)[:_OFFERED])
-        more = f" and {len(self._topics) - _OFFERED} more" if len(self._topics) > _OFFERED else ""
+        near = did_you_mean(field.topic, self._topics)
+        others = nearest_first(field.topic, self._topics)
+        others.sort(key=lambda topic: self._topics[topic].type != field.message)
+        listed = ", ".join(f"`{topic}`" for topic in others[:_OFFERED])
+        more = f" and {len(others) - _OFFERED} more" if len(others) > _OFFERED else ""
         return near or (f"its topics are {listed}{more}" if listed else "it has no topics")
 
 
