@@ -258,6 +258,19 @@ def test_a_page_draws_and_lists_all_violations(tmp_path: Path) -> None:
     assert "<li>+2.5 s (step 2) for 0.5 s</li>" in html
 
 
+def test_a_page_says_why_later_violations_are_not_listed(tmp_path: Path) -> None:
+    rows = recorded(tmp_path, "0,1,false", "1,2,true", "2,1,true")
+    assert "the property reads the past." in page("never near and previously near", rows)
+    assert "is looked for" not in page("never near", rows)
+    assert "is looked for" not in page("never v > 2 and previously near", rows)
+
+
+def test_what_a_finding_quotes_is_shown_as_code(tmp_path: Path) -> None:
+    html = page("decl w /w Float64.data\nlow: never w > 1", recorded(tmp_path, "0,1,true"))
+    assert "<code>low</code> cannot start" in html
+    assert "`" not in re.sub(r"<(script|style)\b.*?</\1>", "", html, flags=re.DOTALL)
+
+
 def test_of_a_large_monitor_only_the_way_is_drawn(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("ltlc.interfaces.pages.machines.MOST_STATES", 1)
     html = page("after near, eventually v > 1\n", recorded(tmp_path, "0,0,false", "1,0,false"))

@@ -22,7 +22,7 @@ from ltlc.interfaces.pages.maps import Course, courses, map_of
 from ltlc.interfaces.pages.panels import Panel, panels
 from ltlc.interfaces.pages.series import Collector
 from ltlc.monitoring.judging.run import RunReport
-from ltlc.monitoring.judging.violations import violation_text
+from ltlc.monitoring.judging.violations import only_first, violation_text
 from ltlc.monitoring.later import all_violations
 from ltlc.runtime import reports
 from ltlc.runtime.properties import stated
@@ -153,7 +153,7 @@ class PageReport:
             "requirement": [(name, printable(value)) for name, value in stated(track.property.requirement)],
             "timeline": len(self._data.timelines) - 1,
             "described": _described(track, trail, drawn),
-            "notes": [*_notes(drawn, run.collected), *_left_out(trail)],
+            "notes": [*_notes(drawn, run.collected), *_left_out(trail), *filter(None, [only_first(track)])],
             "maps": [map_of(course, series, scale, track) for course in self._courses[place]],
             "figure": reports.figure(run.session, track) if is_violated else "",
             "figure_number": self._figures,

@@ -12,6 +12,7 @@ from ltlc.runtime.session import Session
 from ltlc.runtime.times import Scale, seconds, span_text
 from ltlc.runtime.tracking import Track
 from ltlc.semantics.durations import Nanoseconds
+from ltlc.semantics.verdicts import Verdict
 
 
 def violations_report(session: Session, track: Track) -> dict[str, Any]:
@@ -69,12 +70,19 @@ def spread(session: Session, track: Track) -> Spread | None:
     return Spread(len(found), tuple(sorted(each.lasted(end) for each in found)))
 
 
+def only_first(track: Track) -> str:
+    """Why no violation after the first is looked for; empty if all are, if there is none, and for properties of ids."""
+    if track.verdict is not Verdict.VIOLATED or track.slices is not None or all_violations(track) is not None:
+        return ""
+    reads = "values at openings" if track.property.kept else "the past"
+    return f"Only the first violation is looked for: the property reads {reads}."
+
+
 def violations_text(session: Session, track: Track) -> str:
     """A line for each violation of a property: when it was, and for how long."""
     found = all_violations(track)
     if found is None or session.time is None:
-        reads = "values at openings" if track.property.kept else "the past"
-        return f"Only the first violation is looked for: the property reads {reads}.\n"
+        return f"{only_first(track)}\n"
     scale = session.scale.among(each.moment.time for each in found)
     count = f"{counted(len(found), 'violation')}{' or more' if len(found) >= MOST else ''}"
     lines = [f"{count}:", *(f"  {violation_text(scale, each, session.time)}" for each in found)]
