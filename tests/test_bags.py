@@ -458,6 +458,12 @@ def test_a_topic_that_does_not_fit_is_a_finding_on_the_property(
     assert report.exit_code == 3
 
 
+def test_of_a_topic_that_is_missing_one_finding_is_reported_whatever_is_read_of_it(tmp_path: Path) -> None:
+    text = "decl place /elsewhere nav_msgs/Odometry.pose.pose.position\nnear: never hypot(place.x, place.y) > 1\n"
+    (found,) = judged(rosbag2(tmp_path / "bag", regular(10)), text).diagnostics
+    assert found.code == "LTL806"
+
+
 def with_definition(path: Path, definition: str, form: str = "ros2msg") -> Path:
     """A bag of which `/odom` is defined otherwise, its messages being what they were."""
     folder = rosbag2(path, regular(10))

@@ -74,7 +74,7 @@ MISTAKES: tuple[Line | Told | Command, ...] = (
     Line("_rate_ = 10 Hz", "LTL020", "_rate_ = 10"),
     Command("run props.txt none.mcap", "there is no file `none.mcap`"),
     Command("run none.txt drive.mcap", "there is no file none.txt"),
-    Command("run other.txt odom.mcap", "its topics are `/odom`"),
+    Command("run other.txt odom.mcap", "its only topic is `/odom`"),
     Command("run twist.txt odom.mcap", "`nav_msgs/msg/Odometry` in the recording, not `geometry_msgs/msg/Twist`"),
     Command("run typo.txt odom.mcap", "did you mean `/odom`?"),
     Line("decl w /odom Odometry.twist.twist.linear.q", "LTL203", "decl w /odom Odometry.twist.twist.linear.x"),

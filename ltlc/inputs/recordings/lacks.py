@@ -54,8 +54,9 @@ def remarks(
             help = "" if reason else did_you_mean(name, signals)
             yield diagnostic("LTL805", Source(str(path), ""), None, message, help=help)
     for each in properties:
-        for name in _missing(each, columns):
-            yield _missing_column(each, specification, name, signals[name], recording)
+        missing = _missing(each, columns)
+        # Of a topic that is missing, the same is said of every signal.
+        yield from dict.fromkeys(_missing_column(each, specification, n, signals[n], recording) for n in missing)
 
 
 def _missing(specification: PropertySpecification, columns: set[str]) -> list[str]:

@@ -232,7 +232,8 @@ class Plan:
         others.sort(key=lambda topic: self._topics[topic].type != field.message)
         listed = ", ".join(f"`{topic}`" for topic in others[:_OFFERED])
         more = f" and {len(others) - _OFFERED} more" if len(others) > _OFFERED else ""
-        return near or (f"its topics are {listed}{more}" if listed else "it has no topics")
+        topics = "topics are" if len(others) > 1 else "only topic is"
+        return near or (f"its {topics} {listed}{more}" if listed else "it has no topics")
 
 
 def absolute(name: str) -> str:
