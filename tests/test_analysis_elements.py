@@ -30,10 +30,11 @@ DECLARATIONS = (
     "decl names /d DiagnosticArray.status[].name\n"
     "decl levels /d DiagnosticArray.status[].level\n"
     "decl limit /limit Float64.data\n"
+    "decl others /others Float64MultiArray.data\n"
 )
 NUMBERS = (-1.0, 0.0, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0, math.nan, math.inf)
 
-bounds = st.sampled_from(["1", "2", "1", "2", "limit"])
+bounds = st.sampled_from(["1", "2", "1", "2", "limit", "max(others)"])
 relations = st.sampled_from(["<", "<=", ">", ">=", "==", "!="])
 elements = st.builds(
     "{} {} {}".format, st.sampled_from(["scan", "scan", "scan[1:]", "abs(scan)", "sqrt(scan - 1)"]), relations, bounds

@@ -168,10 +168,11 @@ def _tried(atoms: Sequence[Atom]) -> dict[Letter, Mapping[Expression, Any]]:
     asked = [part for atom in atoms for side in operands(atom.condition) for part in subexpressions(side)]
     elements = list(dict.fromkeys(part for part in asked if isinstance(part, Element)))
     is_numeric = all(value_type(part).element is ValueType.NUMBER for side in asked for part in inputs(side))
+    reads_whole = any(isinstance(part, Call) and part.array is not None for part in asked)  # as `min(b)` does
     constants = {part.value for part in asked if isinstance(part, Number) and math.isfinite(part.value)}
     values = list(_around(constants))
     found: dict[Letter, Mapping[Expression, Any]] = {}
-    if not is_numeric or len(values) ** len(elements) > MOST_TRIED:
+    if not is_numeric or reads_whole or len(values) ** len(elements) > MOST_TRIED:
         return found
     for row in product(values, repeat=len(elements)):
         given: dict[Expression, Any] = {
