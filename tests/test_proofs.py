@@ -249,6 +249,34 @@ def test_both_checkers_certify_every_sentence_about_time(certify: Path, tmp_path
     assert len(lines) == 2 * 16 - 1  # s4 asks for an age: what runs of it is not covered
 
 
+BOUNDS = (
+    "7 ns",
+    "1234 ns",
+    "999 us",
+    "1.0005 ms",
+    "12.4 ms",
+    "1.5 s",
+    "1.234567891 s",
+    "61 s",
+    "2 min",
+    "1.5 h",
+    "4 h",
+)
+
+
+def test_both_checkers_read_every_bound_as_it_is_written(certify: Path, tmp_path: Path) -> None:
+    properties, certificate = tmp_path / "bounds.txt", tmp_path / "certificate"
+    states = [f"eventually v > 1 within {bound}" for bound in BOUNDS]
+    properties.write_text("\n".join(["decl v /v Float64.data", *states, "always v < 1 for [0.3 s, 2 s]", ""]), "utf-8")
+    options = ["--target", "json", "-o", str(tmp_path / "out"), "--certificate", str(certificate)]
+    with quick_gate():
+        assert main(["build", str(properties), *options]) == 0
+    text = certificate.read_text(encoding="utf-8")
+    code, lines = coq_answer(certify, tmp_path / "one", text)
+    assert (code, lines) == python_answer(text)
+    assert (code, len(lines)) == (0, len(BOUNDS) + 1)
+
+
 def timed_text(seed: int) -> str:
     """The certificate of a random property with bounds or a past, in an encoding that has a clock for each bound."""
     property_ = Draw(seed).property(depth=1 + seed % 2)

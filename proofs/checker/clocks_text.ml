@@ -40,9 +40,16 @@ let clock_text names clock =
   | LastTrigger (o, x) -> "the last " ^ text x ^ inside o
 
 let units = [ "h", 3_600_000_000_000; "min", 60_000_000_000; "s", 1_000_000_000; "ms", 1_000_000; "us", 1_000; "ns", 1 ]
+
+(* As [duration_text] in ltlc/semantics/durations.py: with decimals rather than four digits, but for full seconds. *)
 let duration_text d =
-  let name, size = Stdlib.List.find (fun (_, size) -> d mod size = 0) units in
-  Printf.sprintf "%d %s" (d / size) name
+  let seconds_and_less = Stdlib.List.filter (fun (_, size) -> size <= 1_000_000_000) units in
+  let name, size = Stdlib.List.find (fun (_, size) -> d mod size = 0) (if d = 0 then seconds_and_less else units) in
+  if d mod 1_000_000_000 = 0 || d / size < 1000 then Printf.sprintf "%d %s" (d / size) name
+  else
+    let name, size = Stdlib.List.find (fun (_, size) -> d >= size) seconds_and_less in
+    let rec decimals rest = if rest = 0 then "" else string_of_int (rest * 10 / size) ^ decimals (rest * 10 mod size) in
+    Printf.sprintf "%d.%s %s" (d / size) (decimals (d mod size)) name
 
 let late_text names timer = "more than " ^ duration_text timer.bound_of ^ " since " ^ clock_text names timer.clock_of
 
