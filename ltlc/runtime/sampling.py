@@ -12,9 +12,6 @@ from typing import Any
 from ltlc.runtime.functions import divide, doubles_of, elements_of, number
 from ltlc.runtime.times import seconds
 
-VECTOR = ("x", "y", "z", "w")
-"""What the components of vectors and orientations are called."""
-
 Value = Any
 """A float or int, a bool, a str, or a tuple of such; None stands for 'no value'."""
 
@@ -58,8 +55,7 @@ class New:
     signal: str
 
     def __str__(self) -> str:
-        whole, _, part = self.signal.rpartition(".")
-        return f"new {whole if part in VECTOR else self.signal}"
+        return f"new {self.signal}"
 
 
 Wanted = Input | Recent | Slope | New
