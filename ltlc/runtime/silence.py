@@ -22,9 +22,14 @@ def waiting_for(session: Session, track: Track) -> list[str]:
         waited = zip(inputs, values, track.property.waits, strict=True)
         missing = [i for i, value, waits in waited if waits and value is None]
     else:
-        pairs = zip(inputs, track.property.waits, strict=True)
-        read = (i for i, waits in pairs if waits and not isinstance(i, New))
-        missing = [Input(i.signal) for i in read if absent(session, i.signal)]
+        keys = track.slices.cut.keys
+        missing = [
+            Input(i.signal)
+            for i, waits in zip(inputs, track.property.waits, strict=True)
+            if (waits and not isinstance(i, New))
+            or any(r.topic in keys for r in _readings(session, i.signal))
+            if absent(session, i.signal)
+        ]
     return list(
         dict.fromkeys(r for i in missing for r in _remarks(session, sampler, i))
     )
