@@ -37,6 +37,7 @@ SCOPES = {
     "false": "constant.language.",
     "NUMBER": "constant.numeric.",
     "TIMES": "constant.numeric.",
+    "HERTZ": "constant.numeric.",
     "DURATION": "constant.numeric.duration.",
     "PARAMETER": "variable.parameter.",
     "STRING": "string.quoted.",
