@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 from hypothesis import strategies as st
 
@@ -47,8 +48,11 @@ def formulas(
     atoms: Sequence[str] = ABC, max_leaves: int = 12, max_temporal: int | None = None
 ) -> st.SearchStrategy[Formula]:
     """Formulas of core LTL over `atoms`; `max_temporal` bounds the operators `Next` and `Until` in each."""
-    unary = (ltl.Not, ltl.Next, ltl.eventually, ltl.globally, ltl.weak_next)
-    binary = (ltl.And, ltl.Or, ltl.Until, ltl.weak_until, ltl.release, ltl.strong_release, ltl.implies)
+    unary: tuple[Any, ...] = (ltl.Not,)
+    binary: tuple[Any, ...] = (ltl.And, ltl.Or, ltl.implies)
+    if max_temporal != 0:
+        unary += (ltl.Next, ltl.eventually, ltl.globally, ltl.weak_next)
+        binary += (ltl.Until, ltl.weak_until, ltl.release, ltl.strong_release)
 
     def extend(inner: st.SearchStrategy[Formula]) -> st.SearchStrategy[Formula]:
         return st.one_of(
