@@ -89,19 +89,22 @@ e: always 1 < 2
 f: eventually 2 < 1 within 1 s
 g: never once true 1 times
 """
+BESIDE_NO_VALUE = """h: never (new v and v > w / w)
+i: never (new scan and any(scan > w / w))
+"""
 
 
 @pytest.mark.parametrize("target", ["python", "ros2"])
 def test_emitted_python_does_what_is_defined_while_signals_are_silent(target: str) -> None:
-    assert all(isinstance(outcome, Replayed) for outcome in outcomes(TOLD, target))
-    compiled, whole = from_text(TOLD)
+    assert all(isinstance(outcome, Replayed) for outcome in outcomes(TOLD + BESIDE_NO_VALUE, target))
+    compiled, whole = from_text(TOLD + BESIDE_NO_VALUE)
     assert all(isinstance(found, ReadBack) for found in read_back(emit(target, compiled, whole), compiled))
 
 
 @pytest.mark.skipif(compiler() is None, reason="there is no C compiler here")
 @pytest.mark.parametrize("rate", ["", "_rate_ = 10\n"])
 def test_emitted_c_does_what_is_defined_while_signals_are_silent(rate: str) -> None:
-    compiled, whole = from_text(rate + TOLD)
+    compiled, whole = from_text(rate + TOLD + BESIDE_NO_VALUE)
     files = c.emit(compiled, whole)
     found = c_programs(files, compiled, whole, MESSAGES)
     assert found is not None
@@ -111,10 +114,10 @@ def test_emitted_c_does_what_is_defined_while_signals_are_silent(rate: str) -> N
 
 @pytest.mark.parametrize("rate", ["", "_rate_ = 10\n"])
 def test_emitted_rust_does_what_is_defined_while_signals_are_silent(rate: str) -> None:
-    compiled, whole = from_text(rate + TOLD)
+    compiled, whole = from_text(rate + TOLD + BESIDE_NO_VALUE)
     file = rust.file_of(compiled, whole)
     read = reading_rust.written(file.text, file.c.header, file.c.source, compiled, whole.rate)
-    assert [isinstance(each, WrittenInC) and type(each.read_back()) for each in read] == [ReadBack] * 7
+    assert [isinstance(each, WrittenInC) and type(each.read_back()) for each in read] == [ReadBack] * 9
     if rust_compiler() is None:
         pytest.skip("there is no compiler for Rust here")
     found = rust_programs(file, compiled, whole, MESSAGES)
@@ -166,7 +169,7 @@ def test_what_c_says_of_signals_without_a_value_is_read_back(right: str, wrong: 
     [
         ("if !self.signals.has_v && self.signals.new_v {", "if !self.signals.has_v && self.signals.new_st {"),
         ("if !self.signals.has_st && self.signals.new_st {", "if !self.signals.has_st {"),
-        ('monitors.signals.mode = "";', ""),
+        ('new.signals.mode = "";', ""),
         ("if !self.signals.has_v {", "if !self.signals.has_on {"),
     ],
 )
@@ -204,6 +207,15 @@ def test_a_message_without_the_first_value_is_no_step_and_counted() -> None:
     assert track.invalid_because == {"a message had no value of v": 1}
     run.message(2 * SECOND, "/v", [0.5])
     assert track.verdict is Verdict.VIOLATED
+
+
+@pytest.mark.parametrize("text", ["never (new v and v > w / w)", "never (new scan and any(scan > w / w))"])
+def test_what_has_no_value_makes_no_step_beside_a_signal_that_has_not_come_too(text: str) -> None:
+    run = session(f"{DECLARED}{text}\n")
+    run.message(SECOND, "/w", [0.0])
+    run.message(2 * SECOND, "/w", [1.0])
+    [track] = run.tracks
+    assert (track.verdict, track.steps, track.invalid) == (Verdict.PRESUMABLY_SATISFIED, 1, 1)
 
 
 def test_a_violation_shows_no_value_where_there_was_none_and_does_not_give_it_as_a_reason() -> None:

@@ -199,9 +199,7 @@ class Property:
         """What holds of the leaves; those that look at openings are drawn so that they have a value, and come later."""
         frame = Frame(samples)
         try:
-            return [
-                not leaf.asks_openings and samples.keys() >= leaf.keys and bool(leaf.of(frame)) for leaf in self.leaves
-            ]
+            return [not leaf.asks_openings and _holds(leaf, frame) for leaf in self.leaves]
         except NoValueError:
             return None
 
@@ -249,6 +247,15 @@ class Property:
                 here |= {c - 1 for c in here if c > start} | {last}
             found += [(k, time) for time in sorted(here)]
         return found
+
+
+def _holds(leaf: Leaf, frame: Frame) -> bool:
+    """Whether a leaf holds; not where samples that it reads have not come. Raises NoValueError."""
+    try:
+        holds = bool(leaf.of(frame))
+    except KeyError:
+        return False
+    return holds and frame.samples.keys() >= leaf.keys
 
 
 def _is_computed(node: s.Node) -> bool:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from itertools import product
@@ -97,6 +97,19 @@ def valued(value: Any) -> Any:
     return value
 
 
+def looked_at(sides: Iterable[Value], f: Frame) -> list[Any]:
+    """The values of `sides`. One without a value is found also beside one whose samples have not come (KeyError)."""
+    found, missing = [], None
+    for side in sides:
+        try:
+            found.append(valued(side(f)))
+        except KeyError as error:
+            missing = error
+    if missing is not None:
+        raise missing
+    return found
+
+
 @dataclass
 class Reader:
     """Makes functions of expressions; what they read is kept in `keys`.
@@ -171,13 +184,18 @@ class Reader:
         x, y = a.of, b.of
         if by == 0:
             relation = RELATIONS[operator]
-            return lambda f: relation(valued(x(f)), valued(y(f)))
+            return lambda f: relation(*looked_at((x, y), f))
         if operator in ORDERINGS:
             relation, relaxed = RELATIONS[operator], self.favour * (by if operator[0] == "<" else -by)
-            return lambda f: relation(float(valued(x(f))), valued(float(valued(y(f))) + relaxed))
+
+            def related(f: Frame) -> bool:
+                one, other = map(float, looked_at((x, y), f))
+                return bool(relation(one, valued(other + relaxed)))
+
+            return related
 
         def close(f: Frame) -> bool:
-            one, other = float(valued(x(f))), float(valued(y(f)))
+            one, other = map(float, looked_at((x, y), f))
             return one == other or abs(one - other) <= by
 
         return close if operator == "==" else lambda f: not close(f)
@@ -402,8 +420,7 @@ class Reader:
 
         def counted(f: Frame) -> tuple[int, int]:
             holding = asked = 0
-            for single in singles:
-                valued(single(f))
+            looked_at(singles, f)
             ends = [min(len(of(f)) for at, of in arrays if at == number) for number in range(len(node.over) or 1)]
             if math.prod(ends) > MOST_COMBINATIONS:
                 raise NoValueError

@@ -13,13 +13,13 @@ from dataclasses import dataclass
 from operator import itemgetter
 
 from ltlc.program.excused import excused
-from ltlc.program.lowering import read
+from ltlc.program.lowering import measured_parts, read
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.instants import Instant as TimedInstant
 from ltlc.semantics.openings import open_part, scope_clocks
 from ltlc.semantics.words import Letter, Word
 from ltlc.specification.atoms import Atom
-from ltlc.specification.evaluation import Value, calculate, is_true, letter, sample
+from ltlc.specification.evaluation import Value, calculate, evaluate, is_nan, is_true, letter, sample
 from ltlc.specification.expressions import (
     Current,
     Expression,
@@ -150,16 +150,18 @@ class Openings:
         self._word += (instant,)
 
     def step(self, values: Mapping[Read, Value]) -> Letter | None:
-        """The letter of the next step, at which the inputs have `values`; None, for no step, if one is NaN.
+        """The letter of the next step, at which the inputs have `values`; None, for no step, if something is NaN.
 
-        Of an input without a value nothing depends on which letter that is, as long as it exists.
+        Of an input without a value nothing depends on which letter that is, as long as it exists. What is compared
+        with it and has no value makes no step nevertheless.
         """
         if any(_is_nan(wanted, value) for wanted, value in values.items()):
             return None
         told = self.read(values)
         known = tuple(atom for atom, asked in self._asked.items() if told.keys() >= asked)
+        beside = (part for atom in self._asked.keys() - {*known} for part in measured_parts(atom.condition))
         seen = letter(known, told)
-        if seen is None:
+        if seen is None or any(told.keys() >= {*reads(part)} and is_nan(evaluate(part, told)) for part in beside):
             return None
         self._latest = told
         if len(known) < len(self._asked):

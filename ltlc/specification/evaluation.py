@@ -83,7 +83,7 @@ def sample(signal: Signal, values: Values[Known]) -> Value | None:
     if signal.when is None:
         return value
     asked = holding(signal.when.conditions, values)
-    if _is_nan(value) or asked is None:
+    if is_nan(value) or asked is None:
         return None
     return value if holds(signal.when.predicate, (asked,)) else None
 
@@ -93,7 +93,8 @@ def _holds(when: When, values: Values[Known]) -> bool:
     return holds(when.predicate, (frozenset(name for name, each in when.conditions if is_true(each, values)),))
 
 
-def _is_nan(value: Value) -> bool:
+def is_nan(value: Value) -> bool:
+    """Whether a value is NaN."""
     return isinstance(value, float) and math.isnan(value)
 
 
@@ -105,7 +106,7 @@ def is_true(condition: Condition, values: Values[Known]) -> bool:
 def truth(condition: Condition, values: Values[Known]) -> bool | None:
     """Whether `condition` holds; None where something that it compares is NaN."""
     compared = [evaluate(operand, values) for operand in operands(condition)]
-    if any(map(_is_nan, compared)):
+    if any(map(is_nan, compared)):
         return None
     match condition:
         case IsTrue():
@@ -350,10 +351,10 @@ def fold(function: Function, elements: Sequence[Single]) -> float:
         return float(len(elements))
     numbers = [element for element in elements if isinstance(element, float | int)]
     if function is Function.COMPLETE:
-        return math.nan if any(map(_is_nan, numbers)) else float(len(numbers))
+        return math.nan if any(map(is_nan, numbers)) else float(len(numbers))
     if function is Function.SUM:
         return _sum(list(map(as_double, numbers)))
-    measured = [number for number in numbers if not _is_nan(number)]
+    measured = [number for number in numbers if not is_nan(number)]
     if function is Function.MEAN:
         return _sum(list(map(as_double, measured))) / len(measured) if measured else math.nan
     if function is Function.MEDIAN:
@@ -363,7 +364,7 @@ def fold(function: Function, elements: Sequence[Single]) -> float:
 
 def nearest(sought: float, elements: Sequence[Single]) -> float:
     """The first of the elements with the least difference."""
-    measured = [as_double(each) for each in elements if isinstance(each, float | int) and not _is_nan(each)]
+    measured = [as_double(each) for each in elements if isinstance(each, float | int) and not is_nan(each)]
     if math.isnan(sought) or not measured:
         return math.nan
     return min(measured, key=lambda each: abs(apply(Function.GAP, [each, sought])))
@@ -392,7 +393,7 @@ def _sum(elements: list[float]) -> float:
 
 def _count(count: Count, values: Values[Known]) -> float:
     """How many elements satisfy a predicate; see `Count`."""
-    if any(_is_nan(evaluate(single, values)) for single in count.singles):
+    if any(is_nan(evaluate(single, values)) for single in count.singles):
         return math.nan
     found, elements = 0, tuple(chain(*count.lists))
     rows = (zip(*(array(element.array, values) for element in of_list), strict=False) for of_list in count.lists)
