@@ -8,7 +8,6 @@ was not known a nanosecond before; of another, that it is the verdict at each st
 from __future__ import annotations
 
 import subprocess
-from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -19,8 +18,8 @@ from benchmarks.conformance.ways import monitors
 from benchmarks.differential import targets
 from benchmarks.differential.compare import PERMANENT
 from ltlc.assurance.evidence.certified import certificates
-from ltlc.assurance.evidence.conditions import NotCoveredError, stated_atoms
-from ltlc.assurance.evidence.document import Claim, Document, Head, Line, StatedAtom, Summed, digest, printed
+from ltlc.assurance.evidence.conditions import NotCoveredError, stated_atoms, stated_counts
+from ltlc.assurance.evidence.document import Claim, Document, Head, StatedAtom, StatedCount, Summed, digest, printed
 from ltlc.base.provenance import FileDigest
 from ltlc.inputs.recordings.blocks import blocks_of
 from ltlc.inputs.recordings.rows import Row as Cells
@@ -33,7 +32,7 @@ from ltlc.semantics.verdicts import Verdict
 
 JUDGE = Path(__file__).parents[2] / "proofs" / "checker" / "judge"
 UNREADABLE = 2
-"""Its exit code where it cannot read the certificate, such as that of an interval."""
+"""Its exit code where it cannot read the certificate."""
 
 
 @dataclass(frozen=True)
@@ -47,15 +46,15 @@ class Stated:
 
 
 @lru_cache(8)
-def _certified(text: str) -> tuple[str, tuple[StatedAtom, ...], str]:
-    """The certificate of a property and its atoms; or why there is none."""
+def _certified(text: str) -> tuple[str, tuple[StatedAtom, ...], tuple[StatedCount, ...], str]:
+    """The certificate of a property, its atoms, and what it counts; or why there is none."""
     [of] = monitors(text).compiled
     try:
         atoms = stated_atoms(of.specification, of.encoding)
     except NotCoveredError as error:
-        return "", (), str(error)
+        return "", (), (), str(error)
     certificate, reasons = certificates([of], targets.BUDGET)
-    return certificate, atoms, reasons.get("p", "")
+    return certificate, atoms, stated_counts(of.specification), reasons.get("p", "")
 
 
 def stated(case: Case) -> Stated:
@@ -64,7 +63,7 @@ def stated(case: Case) -> Stated:
         return Stated(case, reason="it does not start")
     if case.sentence.startswith("each "):
         return Stated(case, reason="it is judged for each id or message")
-    certificate, atoms, reason = _certified(case.text)
+    certificate, atoms, counts, reason = _certified(case.text)
     if reason:
         return Stated(case, reason=reason)
     began, letters = _letters(case)
@@ -72,8 +71,16 @@ def stated(case: Case) -> Stated:
         return Stated(case, reason="its ages count from different messages before its first step")
     if isinstance(letters.lines, Summed):
         return Stated(case, reason="its letters are too long")
-    began = began if letters.session is None else letters.session
-    return Stated(case, certificate, tuple(_claims(case, atoms, began, letters.lines)))
+    claims = []
+    for moment in _moments(case):
+        if isinstance(scopes := letters.scopes(moment), str):
+            return Stated(case, reason=scopes)
+        known = tuple(line for line in letters.lines if line.time <= moment)
+        verdict = Verdict(case.expected.at(moment))
+        session = began if letters.session is None else letters.session
+        claim = Claim("p", case.sentence, atoms, session, known, moment, verdict, moment, counts=counts, scopes=scopes)
+        claims.append(claim)
+    return Stated(case, certificate, tuple(claims))
 
 
 def _letters(case: Case) -> tuple[int, Letters]:
@@ -90,13 +97,6 @@ def _letters(case: Case) -> tuple[int, Letters]:
     letters.settle(None, is_over=True)
     assert session.began is not None
     return session.began, letters
-
-
-def _claims(case: Case, stated_atoms: tuple[StatedAtom, ...], began: int, lines: Sequence[Line]) -> Iterator[Claim]:
-    for moment in _moments(case):
-        known = tuple(line for line in lines if line.time <= moment)
-        verdict = Verdict(case.expected.at(moment))
-        yield Claim("p", case.sentence, stated_atoms, began, known, moment, verdict, moment)
 
 
 def _moments(case: Case) -> list[int]:

@@ -20,6 +20,7 @@ from benchmarks.conformance.definition import Definition, definition
 from benchmarks.differential import arrivals, forms, judge, past, reference, samples, values
 from benchmarks.differential.compare import last_of_each_time
 from benchmarks.differential.samples import Recording, Row
+from benchmarks.differential.values import NoValueError
 
 Judged = Callable[[str, Recording], Verdicts]
 
@@ -340,7 +341,16 @@ READINGS: Mapping[str, Reading] = {
 """By name."""
 
 
-NOT_READ = (ArithmeticError, AssertionError, AttributeError, LookupError, StopIteration, TypeError, ValueError)
+NOT_READ = (
+    ArithmeticError,
+    AssertionError,
+    AttributeError,
+    LookupError,
+    NoValueError,
+    StopIteration,
+    TypeError,
+    ValueError,
+)
 """What the reference raises of a specification that the language does not have, or that it does not know."""
 
 
