@@ -53,7 +53,7 @@ class Refused(Exception):  # noqa: N818
 
 
 class NotCovered(Exception):  # noqa: N818
-    """Not to be told by this program."""
+    """It cannot be checked by this program."""
 
 
 @contextmanager
@@ -122,15 +122,11 @@ class Section:
         for row in text.split("\n"):
             word, _, rest = row.replace("+", "+ ", 1).partition(" ") if row[:1] == "+" else row.partition(" ")
             self.said.setdefault(word, []).append(rest)
+        read = partial(json.loads, object_hook=lambda x: parts.setdefault(json.dumps(x), x))
         texts = [*self.said.get("is", []), *(each.split(" ", 2)[2] for each in self.said.get("signal", []))]
-        self.data: list[Json] = [
-            json.loads(each, object_hook=lambda x: parts.setdefault(json.dumps(x), x)) for each in texts
-        ]
+        self.data: list[Json] = [*map(read, texts)]
         """What the atoms are, or the signals of a table."""
-        self.key: list[Json] = [
-            json.loads(each, object_hook=lambda x: parts.setdefault(json.dumps(x), x))
-            for each in self.said.get("key", [])
-        ]
+        self.key: list[Json] = [*map(read, self.said.get("key", []))]
         """The field that has ids, if there are slices."""
 
     def one(self, word: str) -> str:
