@@ -433,7 +433,7 @@ def test_a_recording_is_opened_by_its_button_too(browser: chromium.Browser) -> N
 def test_of_a_long_recording_that_is_dropped_the_page_says_what_is_not_there(browser: chromium.Browser) -> None:
     lines = "".join(f'{{"time": {number}, "robot.velocity": 1}}\n' for number in range(2500))
     drop(browser, "long.jsonl", lines.encode())
-    browser.wait_until("return document.getElementById('remarks').textContent.includes('only the first 1999 rows')")
+    browser.wait_until("return document.getElementById('opened').textContent.includes('only the first 1999 rows')")
 
 
 @pytest.mark.parametrize(
@@ -445,8 +445,10 @@ def test_a_file_that_is_no_recording_is_refused_when_it_is_dropped(
 ) -> None:
     before = cells(browser, "robot.velocity")
     drop(browser, name, b"time,robot.velocity\n0,1\n")
-    browser.wait_until(f"return document.getElementById('state').textContent.includes({json.dumps(said)})")
-    browser.wait_until("return !document.getElementById('state').textContent.startsWith('opening')")
+    browser.wait_until(
+        "const opened = document.getElementById('opened').textContent;"
+        f"return opened.startsWith('error') && opened.includes({json.dumps(said)})"
+    )
     assert cells(browser, "robot.velocity") == before
 
 
@@ -457,7 +459,7 @@ def test_a_file_that_is_too_large_is_refused_when_it_is_dropped(browser: chromiu
         files.items.add(file);
         document.body.dispatchEvent(new DragEvent("drop", { dataTransfer: files, bubbles: true, cancelable: true }));"""
     )
-    assert "larger than 64 MB" in browser.run("return document.getElementById('state').textContent")
+    assert "larger than 64 MB" in browser.run("return document.getElementById('opened').textContent")
 
 
 def test_a_signal_that_comes_back_has_the_cells_that_it_had(browser: chromium.Browser) -> None:
@@ -563,7 +565,7 @@ def test_everything_that_can_be_used_has_a_name(browser: chromium.Browser) -> No
     const named = (e) => e.getAttribute('aria-label') || e.getAttribute('aria-labelledby') || e.labels?.length
       || e.textContent.trim();
     const usable = document.querySelectorAll('button, a, input, select, textarea, summary, [tabindex], [role]');
-    return [...usable].filter((e) => !named(e) && e.id !== 'state').map((e) => e.outerHTML.slice(0, 80));
+    return [...usable].filter((e) => !named(e) && e.role !== 'status').map((e) => e.outerHTML.slice(0, 80));
     """
     assert browser.run(script) == []
 

@@ -21,7 +21,7 @@ const table = new RunTable($("table"), run, { edited: (what) => runEdited(what, 
 const curves = new Curves($("curves"), run, { edited: (what) => runEdited(what, table), chose });
 const edits = new History(state, showState, showUndo);
 
-let start, findings = [], properties = [], judged = null, rate = null, chosen = 0, at = null, shape = "", note = "", isStale = true, isNew = true;
+let start, findings = [], properties = [], judged = null, rate = null, chosen = 0, at = null, shape = "", isStale = true, isNew = true;
 const labels = () => properties.map((property) => property.label);
 const question = (more = {}) => ({ text: editor.text, encoding: $("encoding").value, property: chosen, ...more });
 
@@ -136,7 +136,7 @@ function chose(number) {
 
 function load(steps) {
   run.load(steps, rate);
-  note = "";
+  tellOpened();
   at = null;
   rowsEdited();
   $("run-title").scrollIntoView({ block: "nearest" });
@@ -163,7 +163,6 @@ function tell(answer) {
   judged = answer?.properties ?? null;
   $("remarks").replaceChildren();
   for (const { severity, message, help } of answer?.diagnostics ?? []) remark(severity, message, help);
-  if (note) remark("note", note);
   table.tell(judged?.map((property) => property.rows));
   curves.tell(judged);
   showMachine(answer?.picture ?? null, at);
@@ -180,7 +179,16 @@ function chooseViolated() {
 }
 
 function remark(severity, message, help = "") {
-  $("remarks").append(make("p", { class: `remark ${severity}` }, make("strong", {}, `${severity} `), message, " ", help ?? ""));
+  $("remarks").append(remarked(severity, message, help));
+}
+
+function remarked(severity, message, help = "") {
+  return make("p", { class: `remark ${severity}` }, make("strong", {}, `${severity} `), message, " ", help ?? "");
+}
+
+// What is to be said of the recording that is opened; nothing once the run has another source.
+function tellOpened(severity, message) {
+  $("opened").replaceChildren(...(message ? [remarked(severity, message)] : []));
 }
 
 function showAll() {
@@ -263,7 +271,7 @@ function showState({ text, encoding, rows }) {
   editor.text = text;
   $("encoding").value = encoding;
   run.rows = rows;
-  note = "";
+  tellOpened();
   isStale = true; // until the text is read
   reshaped();
   shape = "";
@@ -293,11 +301,11 @@ function openExample({ text, run: csv }) {
 function paste(csv) {
   try {
     run.paste(csv);
-    note = "";
+    tellOpened();
     isNew = true;
     rowsEdited();
   } catch (error) {
-    failed(error);
+    notOpened(error);
   }
 }
 
@@ -306,23 +314,26 @@ async function openFile(file) {
   const text = /\.csv$/i.test(file.name) ? await file.text() : "";
   if (text.split("\n", 1)[0].split(",").some((cell) => cell.trim() === "time")) paste(text);
   else if (RECORDING.test(file.name)) openRecording(file);
-  else failed(new Error(`${file.name} is not a recording: open a .mcap, .db3, .bag, .csv, .jsonl or .parquet`));
+  else notOpened(new Error(`${file.name} is not a recording: open a .mcap, .db3, .bag, .csv, .jsonl or .parquet`));
+}
+
+function notOpened(error) {
+  tellOpened("error", error.message);
 }
 
 // Take the run from a recording, which is sent to the server in base64, and kept nowhere.
 async function openRecording(file) {
   if (file.size > start.most) {
-    return failed(new Error(`${file.name} is larger than ${start.most / 1e6} MB: use ltlc run`));
+    return notOpened(new Error(`${file.name} is larger than ${start.most / 1e6} MB: use ltlc run`));
   }
-  $("state").textContent = `opening ${file.name}…`;
-  const content = await base64(file).catch(failed);
+  tellOpened("note", `opening ${file.name}…`);
+  const content = await base64(file).catch(notOpened);
   if (content === undefined) return;
-  const answer = await answered("open", question({ file: file.name, content }));
+  const answer = await answered("open", question({ file: file.name, content }), "open", notOpened);
   if (!answer) return;
-  $("state").textContent = summary(findings);
-  if (!answer.rows) return failed(new Error(answer.diagnostics.map(({ message, help }) => [message, help].filter(Boolean).join(": ")).join("; ")));
+  if (!answer.rows) return notOpened(new Error(answer.diagnostics.map(({ message, help }) => [message, help].filter(Boolean).join(": ")).join("; ")));
   run.rows = answer.rows;
-  note = answer.remark;
+  tellOpened("note", answer.remark);
   isNew = true;
   at = null;
   rowsEdited();
