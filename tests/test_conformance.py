@@ -62,6 +62,12 @@ def test_ltlc_gets_a_sample_right(way: str) -> None:
     assert len(found.in_time) == len(CASES)
 
 
+def test_a_clock_of_one_id_decides_between_messages_by_columns_too() -> None:
+    cases = load(numbers=[2922, 3090, 4588])
+    found = scored("ltlc by columns", cases, ways.answers("ltlc by columns", cases))
+    assert (found.wrong, len(found.in_time)) == ({}, len(cases))
+
+
 def test_the_judge_accepts_what_is_proved_and_no_other_verdict_or_time() -> None:
     judged = 0
     for case in (each for each in CASES if each.proved):

@@ -93,7 +93,7 @@ def _letters(case: Case) -> tuple[int, Letters]:
     for block in blocks_of([Cells(row.time, of.cells(row)) for row in case.recording.rows], of.columns):
         blocks.take(block)
         letters.settle(None)
-    ByRows(session).advance(case.recording.end)
+    ByRows(blocks.session).advance(case.recording.end)
     letters.settle(None, is_over=True)
     assert session.began is not None
     return session.began, letters

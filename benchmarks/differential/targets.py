@@ -177,15 +177,15 @@ def _heard(session: Session, row: Row) -> list[str]:
 
 def by_columns(of: Monitors, recording: Recording, chance: Random) -> By:
     """The session, block by block, in parts of any size."""
-    session = Session(of.judge.plan(()))
-    by_blocks = ByBlocks(session, of.judge.prepared)
+    by_blocks = ByBlocks(Session(of.judge.plan(())), of.judge.prepared)
     if recording.begin < recording.rows[0].time:
-        ByRows(session).begin(recording.begin)
+        ByRows(by_blocks.session).begin(recording.begin)
     rows = [Cells(row.time, of.cells(row)) for row in recording.rows]
     ends = sorted(chance.randint(0, len(rows)) for _ in range(chance.choice([0, 0, 1, 3])))
     for a, b in zip([0, *ends], [*ends, len(rows)], strict=True):
         for block in _blocks(rows[a:b], of.columns):
             by_blocks.take(block)
+    session = by_blocks.session  # only now, for slices go by rows from here on
     ByRows(session).advance(max(recording.end, session.time or 0))
     return {track.property.label: of_track(track) for track in session.tracks}
 
