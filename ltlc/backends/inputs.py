@@ -36,6 +36,14 @@ def require_no_bytes(compiled: Sequence[Compiled]) -> None:
             raise NotInTargetError("bytes that are read as an id")
 
 
+def require_topics(compiled: Sequence[Compiled]) -> None:
+    """Raise NotInTargetError if a property reads a topic that has no name in ROS 2."""
+    for each in compiled:
+        for _, field in (reading for signal in each.specification.signals() for reading in fields(signal)):
+            if field.topic.endswith("]"):
+                raise NotInTargetError(f"`{field.topic}`, an instance of a topic, which only flight logs have")
+
+
 def origin(signal: Signal) -> str:
     """Where a reading comes from, as in a declaration."""
     assert isinstance(signal.definition, Field)

@@ -8,6 +8,7 @@ from pathlib import PurePath
 from typing import Any
 
 from ltlc import __version__
+from ltlc.backends.inputs import require_topics
 from ltlc.backends.python import overview
 from ltlc.backends.python.code import literal
 from ltlc.backends.python.plan import plan_code
@@ -30,6 +31,7 @@ def emit(compiled: Sequence[Compiled], specification: Specification) -> str:
     What it is made of, in the order of the file: the monitors and signals, functions that read the messages of each
     topic, and what is the same in every node: the runtime, and the part that speaks ROS. Raises NotInTargetError.
     """
+    require_topics(compiled)
     program = inline([*MODULES, *node.MODULES], [Import("sys"), Import("math")])
     name = literal(node_name(PurePath(specification.source.name).stem))
     told = context(compiled, specification, program.names | OWN_NAMES)

@@ -167,6 +167,7 @@ CODES: dict[str, Code] = {
     "LTL815": Code("header-stamps", "Messages have no time in a header", WARNING),
     "LTL816": Code("from-before", "The time of `--from` is before the recording", WARNING),
     "LTL818": Code("definitions", "Which definitions are used to read messages", NOTE),
+    "LTL819": Code("dropouts", "A flight log lacks messages", WARNING),
     "LTL705": Code("not-certified", "The monitor could not be certified"),
     "LTL706": Code("unforeseen-letter", "Some values lead to a letter that the alphabet excludes"),
     "LTL707": Code("wrong-text", "The text of the emitted code does not match the monitor"),

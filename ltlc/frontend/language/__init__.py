@@ -106,7 +106,7 @@ def in_order(diagnostics: list[Diagnostic]) -> list[Diagnostic]:
 
 
 def _bad_path(source: Source, bad: BadPath) -> Diagnostic:
-    return diagnostic("LTL906", source, None, f"the message path {bad.path} {bad.reason}")
+    return diagnostic("LTL906", source, None, f"definitions of messages: {bad.path} {bad.reason}")
 
 
 def read_source(path: Path) -> Source | Diagnostic:
@@ -140,7 +140,9 @@ def _is_recording(path: Path) -> bool:
     return path.exists() and is_recording(path)
 
 
-_OF_RECORDINGS = frozenset({".mcap", ".db3", ".bag", ".csv", ".jsonl", ".ndjson", ".parquet", ".gz", ".zst", ".zstd"})
+_OF_RECORDINGS = frozenset(
+    {".mcap", ".db3", ".bag", ".ulg", ".csv", ".jsonl", ".ndjson", ".parquet", ".gz", ".zst", ".zstd"}
+)
 """How the names of recordings end."""
 
 

@@ -38,7 +38,7 @@ MAX_SIZE = 10_000
 MAX_TOPIC = 247
 """How long the name of a topic may be in ROS 2, its leading slash included."""
 
-_TOPIC = re.compile(r"(?:~/|/)?[A-Za-z_]\w*(?:/[A-Za-z_]\w*)*", re.ASCII)
+_TOPIC = re.compile(r"(?:~/|/)?[A-Za-z_]\w*(?:/[A-Za-z_]\w*)*(?:\[\d{1,3}\])?", re.ASCII)
 
 
 @dataclass
@@ -134,7 +134,10 @@ def _set_simulator(checker: Checker, command: syntax.Setting) -> None:
 
 
 def is_topic(text: str) -> bool:
-    """Whether `text` can be the name of a topic; one without a leading `/` or `~` is below the root."""
+    """Whether `text` can be the name of a topic; one without a leading `/` or `~` is below the root.
+
+    Flight logs have instances of topics, which are numbers in brackets.
+    """
     return _TOPIC.fullmatch(text) is not None and len(text) + (text[0] not in "/~") <= MAX_TOPIC
 
 

@@ -23,6 +23,10 @@ _WORDS = frozenset(
 """Words that names avoid."""
 
 
+PX4 = "/fmu/out/"
+"""What the topics of PX4 begin with: names are shorter without it."""
+
+
 class Names:
     """Names of signals and labels, each given once."""
 
@@ -38,5 +42,5 @@ class Names:
 
 def name_of(topic: str) -> str:
     """What signals of `topic` are called."""
-    name = re.sub(r"[\W_]+", "_", topic).strip("_")
+    name = re.sub(r"[\W_]+", "_", topic.removeprefix(PX4)).strip("_")
     return f"topic_{name}".rstrip("_") if not name or name[0].isdigit() or name.lower() in _WORDS else name

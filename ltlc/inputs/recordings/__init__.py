@@ -106,13 +106,10 @@ def open_recording(path: Path, signals: Mapping[str, Signal], reading: ReadOptio
         with fenced(path, "LTL811"):
             return BagRecording(path, signals, reading)
     table = _table(path)
-    if path.suffix.lower() == ".ulg":
-        help = "PX4's flight logs are not read yet: `ulog2csv` of pyulog exports them as CSV, with times in µs"
-        raise failure("LTL807", path, f"`{path}` is a flight log, in the format ULog", help)
     if table is None:
         help = (
-            "a bag is a folder with metadata.yaml; file names end in .mcap, .db3, .bag, .csv, .jsonl or .parquet; "
-            "text may be compressed: .csv.gz, .csv.zst"
+            "a bag is a folder with metadata.yaml; file names end in .mcap, .db3, .bag, .ulg, .csv, .jsonl or "
+            ".parquet; text may be compressed: .csv.gz, .csv.zst"
         )
         raise failure("LTL807", path, f"`{path}` is not a recording", help)
     with fenced(path, "LTL820"):

@@ -24,6 +24,8 @@ from ltlc.base.files import refuse_unwritable
 from ltlc.compiler import Compiled
 from ltlc.specification.specification import Specification
 
+_NODE = "ROS 2"
+
 
 @dataclass(frozen=True)
 class Made:
@@ -101,7 +103,9 @@ class _Text:
             text = backends.emit(self.name, compiled, specification)
         except NotInTargetError:
             emit = partial(backends.emit, self.name)
-            raise UnfitError(_unfit(self.name.capitalize(), emit, specification, compiled)) from None
+            raise UnfitError(
+                _unfit(_NODE if self.name == "ros2" else self.name.capitalize(), emit, specification, compiled)
+            ) from None
         read = (
             written(text, [each.machine for each in compiled], [each.specification for each in compiled])
             if self.name in READABLE
@@ -189,7 +193,8 @@ def _unfit(
             except NotInTargetError as error:
                 message = f"`{each.specification.label}` cannot be written in {language}: it has {error}"
                 other = f"; {error.instead}" if error.instead else ""
-                help = f"nothing was written{other}; the target `ros2` supports it"
+                node = "" if language == _NODE else "; the target `ros2` supports it"
+                help = f"nothing was written{other}{node}"
                 found.append(diagnostic("LTL708", specification.source, each.specification.span, message, help=help))
         if found:
             break

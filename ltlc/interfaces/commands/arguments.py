@@ -70,8 +70,8 @@ def add_recordings(parser: argparse.ArgumentParser) -> None:
         "recordings",
         metavar="RECORDING",
         nargs="+",
-        help="a recorded run: a bag, .csv, .jsonl or .parquet; a folder of them, a pattern such as 'drives/**/*.mcap', "
-        "an address such as s3://bucket/drives",
+        help="a recorded run: a bag, .ulg, .csv, .jsonl or .parquet; a folder of them, a pattern such as "
+        "'drives/**/*.mcap', an address such as s3://bucket/drives",
     )
     parser.add_argument(
         "--from",

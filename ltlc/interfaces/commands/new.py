@@ -28,7 +28,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="RECORDING",
         nargs="?",
         type=Path,
-        help="a bag, .csv, .jsonl or .parquet; without it, the output of `ros2 topic list -t` is read from stdin",
+        help="a bag, .ulg, .csv, .jsonl or .parquet; without it, the output of `ros2 topic list -t` is read from stdin",
     )
     parser.add_argument(
         "-o", "--output", type=Path, metavar="FILE", help="a file that does not exist yet (default: stdout)"

@@ -13,7 +13,7 @@ import { showCard, showExplanation, showMachine, showMaps, showProperties, showR
 import { MOST_STEPS, Run, WAVES } from "./run.js";
 import { RunTable } from "./table.js";
 
-const RECORDING = /\.(mcap|db3|bag|parquet|(csv|jsonl|ndjson)(\.gz|\.zst)?)$/i;
+const RECORDING = /\.(mcap|db3|bag|ulg|parquet|(csv|jsonl|ndjson)(\.gz|\.zst)?)$/i;
 
 const run = new Run();
 const editor = new Editor($("text"), document.querySelector(".marks"), textEdited, cursorMoved);
@@ -314,7 +314,7 @@ async function openFile(file) {
   const text = /\.csv$/i.test(file.name) ? await file.text() : "";
   if (text.split("\n", 1)[0].split(",").some((cell) => cell.trim() === "time")) paste(text);
   else if (RECORDING.test(file.name)) openRecording(file);
-  else notOpened(new Error(`${file.name} is not a recording: open a .mcap, .db3, .bag, .csv, .jsonl or .parquet`));
+  else notOpened(new Error(`${file.name} is not a recording: open a .mcap, .db3, .bag, .ulg, .csv, .jsonl or .parquet`));
 }
 
 function notOpened(error) {

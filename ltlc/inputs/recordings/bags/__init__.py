@@ -1,10 +1,11 @@
-"""Bags of ROS: rosbag2 folders, MCAP files and databases, and bags of ROS 1, read as columns of the fields wanted."""
+"""Bags of ROS: rosbag2 folders, MCAP files and databases, bags of ROS 1, flight logs: fields as columns."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -27,7 +28,7 @@ from ltlc.inputs.recordings.rows import RecordingError, failure, outside
 from ltlc.runtime.reports import counted
 from ltlc.runtime.times import NEVER, seconds_text
 from ltlc.semantics.durations import Nanoseconds
-from ltlc.specification.expressions import Signal
+from ltlc.specification.expressions import Field, Signal
 
 __all__ = ["BagRecording", "is_bag"]
 
@@ -38,9 +39,13 @@ class BagRecording:
     def __init__(self, path: Path, signals: Mapping[str, Signal], reading: ReadOptions) -> None:
         self._path = path
         self._reading = reading
+        definitions = (signal.definition for signal in signals.values())
+        wanted = {field.topic: field.message for field in definitions if isinstance(field, Field)}
+        self._opened = partial(opened, wanted=wanted)
         self._bag = bag_at(path)
         self._unusable: RecordingError | None = None
         self._storages: dict[Path, Storage | None] = {}
+        self._of_files: list[Diagnostic] = []
         self._spans: list[tuple[Nanoseconds, Nanoseconds] | None] = []
         self._distribution = self._bag.distribution
         self._topics = of_all_files(list(self._looked_at()))
@@ -56,8 +61,9 @@ class BagRecording:
         """The topics of each file, up to one that cannot be used; of the first, this is raised."""
         for file in self._bag.files:
             try:
-                with opened(file) as storage:
+                with self._opened(file) as storage:
                     self._spans.append(storage.span)
+                    self._of_files += storage.remarks
                     self._distribution = self._distribution or storage.distribution
                     self._storages[file] = None if is_packed(file) else storage
                     yield storage.topics
@@ -103,7 +109,7 @@ class BagRecording:
 
     def remarks(self) -> list[Diagnostic]:
         """What was irregular about the files and definitions, and, once they have been read, about times."""
-        found = [*self._bag.remarks, *self._about_definitions()]
+        found = [*self._bag.remarks, *self._of_files, *self._about_definitions()]
         for topic, reader in self._plan.readers.items():
             if self._reading.stamp is Stamp.HEADER and not reader.has_stamps:
                 message = f"the messages on `{topic}` have no header: the time of recording is used"
@@ -224,7 +230,7 @@ class BagRecording:
         names = [name for name in self._topics if absolute(name) in self._plan.readers]
         since, until = self._limits or (-LATEST, LATEST)
         for number, (file, known) in enumerate(self._storages.items()):
-            opening: AbstractContextManager[Storage] = opened(file) if known is None else nullcontext(known)
+            opening: AbstractContextManager[Storage] = self._opened(file) if known is None else nullcontext(known)
             with opening as storage:
                 for batch in storage.batches([name for name in names if name in storage.topics], since, until):
                     yield replace(batch, next=self._next(batch, number))

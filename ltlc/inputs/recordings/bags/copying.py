@@ -21,6 +21,7 @@ from ltlc.inputs.recordings.bags.messages import LATEST
 from ltlc.inputs.recordings.bags.ros1 import Ros1Storage
 from ltlc.inputs.recordings.bags.scalars import MisfitError
 from ltlc.inputs.recordings.bags.sqlite import SqliteStorage
+from ltlc.inputs.recordings.bags.ulog import ULogStorage
 from ltlc.inputs.recordings.fence import fenced
 from ltlc.inputs.recordings.rows import RecordingError, failure
 from ltlc.semantics.durations import Nanoseconds
@@ -32,7 +33,7 @@ MOST = 1 << 16
 class _File(NamedTuple):
     """A file of a bag, the times of its messages, and the numbers that its channels have in what is copied."""
 
-    parts: McapParts | SqliteStorage | Ros1Storage
+    parts: McapParts | SqliteStorage | Ros1Storage | ULogStorage
     span: tuple[Nanoseconds, Nanoseconds] | None
     numbers: dict[int, int]
     is_same: bool
@@ -77,6 +78,9 @@ class Copier:
                 database = SqliteStorage(file)
                 contents = self._defined(database.contents(), distribution or database.distribution)
                 self._files.append(_File(database, database.span, *self._numbered(contents)))
+            case ".ulg":
+                log = ULogStorage(file, {})
+                self._files.append(_File(log, log.span, *self._numbered(log.contents())))
             case _:
                 bag = Ros1Storage(file)
                 self._profile = "ros1"

@@ -22,6 +22,7 @@ from ltlc.inputs.recordings.rows import RecordingError, failure
 METADATA = "metadata.yaml"
 _PACKED = ".zstd"
 _STORAGES = (".mcap", ".db3")
+_ALONE = (".bag", ".ulg")
 _NUMBER = re.compile(r"\d+")
 
 
@@ -42,7 +43,7 @@ def is_bag(path: Path) -> bool:
     """Whether `path` is one, by its name and by what is in it if it is a folder."""
     if path.is_dir():
         return (path / METADATA).is_file() or (os.access(path, os.R_OK) and bool(_storage_files(path)))
-    return _kind(path) in (*_STORAGES, ".bag")
+    return _kind(path) in (*_STORAGES, *_ALONE)
 
 
 def is_packed(path: Path) -> bool:
@@ -127,10 +128,13 @@ def _unread(folder: Path, name: str) -> Diagnostic:
 
 
 @contextmanager
-def opened(path: Path) -> Iterator[Storage]:
-    """The storage at `path`; one that is compressed lies in a temporary folder meanwhile. Raises RecordingError."""
+def opened(path: Path, wanted: Mapping[str, str]) -> Iterator[Storage]:
+    """The storage at `path`, from which messages are wanted, by topic with their types. Raises RecordingError.
+
+    One that is compressed lies in a temporary folder meanwhile.
+    """
     with unpacked(path) as plain:
-        yield _storage(plain)
+        yield _storage(plain, wanted)
 
 
 @contextmanager
@@ -161,7 +165,7 @@ def _unpack(path: Path, target: Path) -> None:
         raise failure("LTL902", path, f"`{path}` cannot be decompressed: {error.strerror}") from None
 
 
-def _storage(path: Path) -> Storage:
+def _storage(path: Path, wanted: Mapping[str, str]) -> Storage:
     match path.suffix.lower():
         case ".mcap":
             from ltlc.inputs.recordings.bags.mcap import McapStorage
@@ -171,6 +175,10 @@ def _storage(path: Path) -> Storage:
             from ltlc.inputs.recordings.bags.sqlite import SqliteStorage
 
             return SqliteStorage(path)
+        case ".ulg":
+            from ltlc.inputs.recordings.bags.ulog import ULogStorage
+
+            return ULogStorage(path, wanted)
         case _:
             pass
     from ltlc.inputs.recordings.bags.ros1 import Ros1Storage

@@ -20,14 +20,17 @@ def message_types(
 ) -> tuple[MessageTypes, list[BadPath]]:
     """The messages of Jazzy, those that the bags among `recordings` define, and those below `paths`; the later win.
 
-    Also what could not be read. Types that are `named` are looked for in all bags. What is recorded may lack constants,
-    which are in no message: these stay as they are.
+    Also what could not be read; a recording only if a type is not known otherwise. Types that are `named` are looked
+    for in all bags. What is recorded may lack constants, which are in no message: these stay as they are.
     """
     given, problems = given_messages(paths)
     known = shipped()
-    recorded = _recorded(recordings, named, MessageTypes({**known, **given}))
+    recorded, unread = _recorded(recordings, named, MessageTypes({**known, **given}))
     fuller = {name: _with_constants(message, known.get(name)) for name, message in recorded.items()}
-    return MessageTypes({**known, **fuller, **given}), problems
+    types = MessageTypes({**known, **fuller, **given})
+    if unread and not all(types.find(name) for name in named()):
+        problems += unread
+    return types, problems
 
 
 def _with_constants(message: Message, other: Message | None) -> Message:
@@ -82,13 +85,15 @@ def _read_bag(path: Path) -> tuple[dict[str, Message], list[BadPath]]:
     return found, [] if found else [BadPath(str(path), "is a bag that defines no messages")]
 
 
-def _recorded(paths: Iterable[Path], named: Callable[[], Sequence[str]], types: MessageTypes) -> dict[str, Message]:
-    """What the bags among `paths` define, of which the earlier win.
+def _recorded(
+    paths: Iterable[Path], named: Callable[[], Sequence[str]], types: MessageTypes
+) -> tuple[dict[str, Message], list[BadPath]]:
+    """What the bags among `paths` define, of which the earlier win; with what cannot be read.
 
-    The first is always looked at, the others until all types that are `named` are known, beside those in `types`. What
-    cannot be read is reported when it is judged.
+    The first is always looked at, the others until all types that are `named` are known, beside those in `types`.
     """
     found: dict[str, Message] = {}
+    unread: list[BadPath] = []
     names: Sequence[str] = ()
     for number, path in enumerate(filter(is_bag, paths)):
         if number:
@@ -96,5 +101,7 @@ def _recorded(paths: Iterable[Path], named: Callable[[], Sequence[str]], types: 
             known = MessageTypes({**types.messages, **found})
             if all(known.find(name) for name in names):
                 break
-        found = _read_bag(path)[0] | found
-    return found
+        more, problems = _read_bag(path)
+        found = more | found
+        unread += problems
+    return found, unread

@@ -43,6 +43,7 @@ class McapStorage:
     """An MCAP file. Raises RecordingError if it is not one."""
 
     distribution = ""
+    remarks = ()
 
     def __init__(self, path: Path) -> None:
         self._path = path

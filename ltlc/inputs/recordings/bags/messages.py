@@ -9,6 +9,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from ltlc.base.diagnostics import Diagnostic
 from ltlc.inputs.recordings.blocks import Array, Places
 from ltlc.runtime.times import NEVER
 from ltlc.semantics.durations import Nanoseconds
@@ -117,6 +118,11 @@ class Storage(Protocol):
     @property
     def span(self) -> tuple[Nanoseconds, Nanoseconds] | None:
         """When the first and the last message were recorded; None if that is not known, or there is none."""
+        ...
+
+    @property
+    def remarks(self) -> Sequence[Diagnostic]:
+        """What was irregular about the file, as far as that is known before it is read."""
         ...
 
     def batches(self, topics: Collection[str], since: Nanoseconds, until: Nanoseconds) -> Iterator[Batch]:

@@ -39,6 +39,7 @@ class Ros1Storage:
     """A `.bag` file. Raises RecordingError if it is not one."""
 
     distribution = ""
+    remarks = ()
 
     def __init__(self, path: Path) -> None:
         self._path = path

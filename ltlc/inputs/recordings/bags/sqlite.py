@@ -38,6 +38,8 @@ _FAULTS = (sqlite3.Error, OSError, OverflowError, UnicodeDecodeError)
 class SqliteStorage:
     """A database of topics and messages. Raises RecordingError if it is not one."""
 
+    remarks = ()
+
     def __init__(self, path: Path) -> None:
         self._path = path
         try:
