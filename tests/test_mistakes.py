@@ -159,7 +159,7 @@ MISTAKES: tuple[Line | Told | Command, ...] = (
     Command("check own.txt", "`--msg-path` adds the messages of a package or a bag"),
     Line("w = /odom.pose.pose.position.x", "LTL021", "decl w /odom Odometry.pose.pose.position.x"),
     Command("run props.txt calendar.csv", "write it in seconds since 1970: `1769787125.5`, if it is in UTC"),
-    Command("run props.txt flight.ulg", "flight logs are not read yet: `ulog2csv` of pyulog exports them"),
+    Command("run props.txt flight.ulg", "cannot be read as a flight log: it does not begin as one"),
 )
 
 FILES = {

@@ -268,6 +268,16 @@ def test_what_is_not_a_log_or_has_unknown_features_is_refused(tmp_path: Path) ->
         ULogStorage(log.save(path), {})
 
 
+def test_evidence_says_that_it_does_not_cover_flight_logs(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    log = speeds([(0, 1.0)]).save(tmp_path / "flight.ulg")
+    evidence = tmp_path / "flight.evidence"
+    code, printed = judged(tmp_path, f"{SPEED}never speed > 2\n", log, capsys, "--evidence", str(evidence))
+    assert code == 0
+    assert "LTL851" in printed
+    assert "does not read flight logs" in printed
+    assert "verdict" not in evidence.read_text()
+
+
 def test_data_that_were_appended_after_a_crash_are_read_and_what_was_cut_off_before_them_is_left(
     tmp_path: Path,
 ) -> None:

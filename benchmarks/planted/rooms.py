@@ -42,7 +42,8 @@ ROOMS = {
     "monitoring/mining": "test_mining.py",
     "interfaces/pages": "test_attesting.py test_pages_*.py test_campaigns_page.py test_api_display.py",
     "program": "test_program_*.py",
-    "inputs/recordings": "test_recordings*.py test_bag*.py test_tables*.py test_one_drive_*.py test_damage.py",
+    "inputs/recordings": "test_recordings*.py test_bag*.py test_tables*.py test_one_drive_*.py test_damage.py "
+    "test_ulog.py",
     "base/render": "test_render*.py",
     "runtime": "test_runtime_*.py test_recordings*.py test_openings.py test_each*.py test_explained.py",
     "semantics": "test_semantics_*.py test_diagrams.py test_runtime_episodes.py test_openings.py",

@@ -70,6 +70,11 @@ def is_recording(path: Path) -> bool:
     return is_bag(path) or _table(path) is not None
 
 
+def is_table(path: Path) -> bool:
+    """Whether `path` is a table, by its name."""
+    return not is_bag(path) and _table(path) is not None
+
+
 def _table(path: Path) -> Callable[[Path], Table] | None:
     """What reads the table at `path`; None if its name is not that of one."""
     # Here, as a bag needs none of them: for a small one, what they import was a thirtieth of the time.

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import argparse
+import os
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import replace
+from functools import partial
 from itertools import chain
 from pathlib import Path
 
@@ -14,6 +16,7 @@ from ltlc.backends.python.plan import plan_code
 from ltlc.base.diagnostics import Diagnostic, Severity
 from ltlc.base.files import refuse_unwritable, write_all
 from ltlc.interfaces.commands.common import UNUSABLE, overwritten, refused, report, unusable, unwritable
+from ltlc.interfaces.commands.cutting import show_extracts, show_nothing_cut
 from ltlc.interfaces.commands.page import Page
 from ltlc.interfaces.commands.progress import progress, saying
 from ltlc.monitoring.campaigns.bundle import Bundle, BundleError
@@ -24,12 +27,13 @@ from ltlc.monitoring.campaigns.outcomes import Outcome
 from ltlc.monitoring.campaigns.places import Found
 from ltlc.monitoring.campaigns.results import Results, ResultsError, digest
 from ltlc.monitoring.campaigns.tally import Tally
+from ltlc.monitoring.judging.cutting import Cutting
 from ltlc.monitoring.judging.run import Judge
 
 
 def run_several(judge: Judge, found: Found, options: argparse.Namespace) -> int:
     """Judge the recordings that were found, each by itself; the exit code is the worst: 2, 1, 3, 0."""
-    for name in ("output", "timing", "all", "cut"):
+    for name in ("output", "timing", "all"):
         if getattr(options, name):
             return unusable(f"--{name} takes a single recording")
     if options.report and (options.results or options.engine):
@@ -82,11 +86,9 @@ def _judge(judge: Judge, found: Found, options: argparse.Namespace, page: Page |
         if judge.evidence is not None:
             bundle = open_.enter_context(Bundle(options.evidence, judge.evidence))
         if options.results:
-            # What there is no evidence of is judged again, as if it had changed.
-            places = [
-                each if bundle is None or bundle.has(each) else replace(each, version="") for each in found.places
-            ]
-            results = open_.enter_context(Results(options.results, _digest(judge, options), places))
+            is_all = bundle is None and judge.cutting is None
+            is_complete = None if is_all else partial(_is_complete, judge.cutting, bundle)
+            results = open_.enter_context(Results(options.results, _digest(judge, options), found.places, is_complete))
         kept = results.names() if results else set()
         earlier = results.kept() if results else ()
         waiting = [place for place in found.places if place.name not in kept]
@@ -96,6 +98,8 @@ def _judge(judge: Judge, found: Found, options: argparse.Namespace, page: Page |
             tally.add(outcome, is_kept=outcome.place.name in kept)
             remarks.add(outcome.diagnostics)
             sys.stdout.write(form.add(outcome))
+            if outcome.place.name not in kept:
+                show_extracts(outcome.extracts, options)
             if bundle is not None and outcome.place.name in kept:
                 bundle.keep(outcome.place)
             elif bundle is not None:
@@ -105,7 +109,15 @@ def _judge(judge: Judge, found: Found, options: argparse.Namespace, page: Page |
         names = ", ".join(bundle.lacking)
         print(f"ltlc: no evidence of what could not be judged to its end: {names}", file=sys.stderr)
     sys.stdout.write(form.end(tally, found))
+    if judge.cutting is not None and not tally.extracts:
+        show_nothing_cut(options)
     return tally
+
+
+def _is_complete(cutting: Cutting | None, bundle: Bundle | None, outcome: Outcome) -> bool:
+    """Whether an earlier campaign has left all that is asked for; otherwise, the recording is judged again."""
+    is_cut = cutting is None or cutting.has(outcome.report.get("cut"), outcome.extracts)
+    return is_cut and (bundle is None or bundle.has(outcome.place))
 
 
 def _digest(judge: Judge, options: argparse.Namespace) -> str:
@@ -129,12 +141,21 @@ def _watched(
 ) -> Iterator[Outcome]:
     """`outcomes`, each kept in the table of results; progress is shown unless lines on stdout show it."""
     with progress("judging", options.quiet) as watch:
-        for done, outcome in enumerate(outcomes, 1):
+        for done, outcome in enumerate(map(_with_extracts_here, outcomes), 1):
             if results:
                 results.add(outcome)
             if watch and (options.format != "text" or not sys.stdout.isatty()):
                 watch(done, count)
             yield outcome
+
+
+def _with_extracts_here(outcome: Outcome) -> Outcome:
+    """The outcome, with an error if a worker has written an extract that cannot be seen from here."""
+    elsewhere = next((each["file"] for each in outcome.extracts if not os.path.isfile(each["file"])), None)
+    if elsewhere is None:
+        return outcome
+    error = f"{elsewhere} is not on this machine; workers must see the folder under the same name"
+    return replace(outcome, report={**outcome.report, "cut": {**outcome.report["cut"], "error": error}})
 
 
 class Remarks:

@@ -28,10 +28,10 @@ class Page:
             study = study_of(judge.specification, ENCODINGS[options.encoding], budget)
             self._report.explain(explain(study, budget))
 
-    def judge(self, path: Path, watchers: Sequence[Watcher] = ()) -> RunReport:
+    def judge(self, path: Path, watchers: Sequence[Watcher] = (), name: str = "") -> RunReport:
         """What the recording at `path` shows, which goes on the page, too."""
         collected = self._report.collector()
-        found = self._judge.judge(path, [collected.take, *watchers])
+        found = self._judge.judge(path, [collected.take, *watchers], name)
         self._report.add(found, collected)
         return found
 

@@ -14,7 +14,7 @@ from ltlc.base.files import refuse_unwritable, write_all
 from ltlc.inputs.recordings import Block
 from ltlc.interfaces.commands import arguments
 from ltlc.interfaces.commands.common import OK, compile_file, overwritten, refused, report, unusable, unwritable
-from ltlc.interfaces.commands.cutting import add_cut, cut, refuse_cut
+from ltlc.interfaces.commands.cutting import add_cut, cutting, refuse_cut, show_extracts, show_nothing_cut
 from ltlc.interfaces.commands.progress import saying
 from ltlc.interfaces.commands.watching import add_watch, watched
 from ltlc.monitoring.columns.timing import timing
@@ -111,6 +111,9 @@ def _run(options: argparse.Namespace) -> int:
         with saying("looking for recordings", options.quiet):
             found = find(options.recordings, options.results)
         paths = found.paths
+    cut = cutting(options, None if found is None else [place.name for place in found.places])
+    if cut is not None and (code := refuse_cut(cut, list(cut.folders) or options.recordings, options)):
+        return code
     prepared = compile_file(options, paths)
     if isinstance(prepared, int):
         return prepared
@@ -131,13 +134,12 @@ def _run(options: argparse.Namespace) -> int:
         remarks=prepared.late,
         hashed=options.format != "text" or options.results is not None,
         evidence=evidence,
+        cutting=cut,
     )
     if found is not None:
         from ltlc.interfaces.commands.campaign import run_several
 
         return run_several(judge, found, options)
-    if options.cut and (code := refuse_cut(paths[0], options)):
-        return code
     return _run_one(judge, Path(options.recordings[0]), options)
 
 
@@ -175,8 +177,12 @@ def _run_one(judge: Judge, path: Path, options: argparse.Namespace) -> int:
 
         written[options.evidence] = printed(found.evidence).encode()
     code = _write(written, options.quiet)
-    if not code and options.cut:
-        code = cut(found, path, options)
+    if found.cut is not None:
+        show_extracts(found.cut.extracts, options)
+        if found.cut.error:
+            return unusable(found.cut.error)
+        if not found.cut.extracts:
+            show_nothing_cut(options)
     return code or found.exit_code
 
 

@@ -15,7 +15,7 @@ from ltlc.inputs.recordings.ahead import one_thread
 from ltlc.monitoring.campaigns.outcomes import Outcome, lost, not_judged, of_report
 from ltlc.monitoring.campaigns.places import Location
 from ltlc.monitoring.campaigns.storage import StorageError, fetched
-from ltlc.monitoring.judging.run import Judge, RunReport
+from ltlc.monitoring.judging.run import Judge, RunReport, Watcher
 
 TRIES = 3
 """How often a recording is begun that ends its process or cannot be fetched."""
@@ -54,8 +54,8 @@ def judge_all(judge: Judge, places: Sequence[Location], workers: Workers) -> Ite
 class Judging(Protocol):
     """What judges as `Judge` does."""
 
-    def judge(self, path: Path) -> RunReport:
-        """What the recording at `path` shows."""
+    def judge(self, path: Path, watchers: Sequence[Watcher], name: str) -> RunReport:
+        """What the recording at `path` shows, which has this name among others."""
         ...
 
 
@@ -64,7 +64,7 @@ def judge_one(judge: Judging, place: Location) -> Outcome | Failure:
     start = perf_counter()
     try:
         with fetched(place.name) as path:
-            found = judge.judge(path)
+            found = judge.judge(path, (), place.name)
             return of_report(place, found, perf_counter() - start)
     except StorageError as error:
         return Failure(str(error), error.diagnostic)

@@ -68,9 +68,19 @@ class Outcome:
         return last
 
     @property
+    def extracts(self) -> list[Mapping[str, Any]]:
+        """What was written around violations, as objects of JSON."""
+        return [each for of_one in self.properties for each in of_one.report.get("extracts", ())]
+
+    @property
+    def not_cut(self) -> str:
+        """Why not all extracts that were asked for could be written; empty if they were."""
+        return str((self.report.get("cut") or {}).get("error") or "")
+
+    @property
     def exit_code(self) -> int:
         """That of `ltlc run` on this recording alone."""
-        if self.error is not None:
+        if self.error is not None or self.not_cut:
             return 2
         left_out = any("each" in each.report and each.report["each"]["left_out"] for each in self.properties)
         return reports.exit_code([each.verdict for each in self.properties], left_out)

@@ -26,8 +26,8 @@ TIMELINE = 200
 def summary_page(specification: str, tally: Tally, found: Found, english: Mapping[str, str], folder: Path) -> str:
     """The page: which properties fail where, first violations side by side, and what was never triggered.
 
-    `english` says in words what each property means, by its label. The page links to recordings of this machine, as
-    seen from the `folder` that it is written to.
+    `english` says in words what each property means, by its label. The page links to recordings of this machine and
+    to extracts of them, as seen from the `folder` that it is written to.
     """
     properties = list(tally.properties.values())
     return document(
@@ -64,11 +64,19 @@ def _failures(of_one: PropertyTally) -> dict[str, Any]:
         "label": of_one.label,
         "text": of_one.text,
         "count": of_one.counts[Result.VIOLATED],
-        "places": [(each.recording, _moment(each.found.report["decided_at"])) for each in of_one.failing],
+        "places": [
+            (each.recording, _moment(each.found.report["decided_at"]), _extracts(each)) for each in of_one.failing
+        ],
         "first": [each.recording for each in first],
+        "extracts": [_extracts(each) for each in first],
         "timelines": [_timeline(each) for each in first],
         "lines": _side_by_side(first),
     }
+
+
+def _extracts(failing: Failing) -> list[str]:
+    """The files with what was recorded around the violations of the property."""
+    return [str(each["file"]) for each in failing.found.report.get("extracts", ())]
 
 
 def _timeline(failing: Failing) -> dict[str, Any] | None:

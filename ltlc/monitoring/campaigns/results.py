@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from hashlib import sha256
 from itertools import chain, groupby
@@ -47,12 +47,21 @@ class ResultsError(Exception):
 class Results:
     """The table at `path`, of the recordings at `places` and no others, as they were `judged_with` one specification.
 
+    What is there of earlier campaigns is kept as long as it `is_complete`.
+
     Raises ResultsError if there is something else, or it cannot be written.
     """
 
-    def __init__(self, path: Path, judged_with: str, places: Iterable[Location]) -> None:
+    def __init__(
+        self,
+        path: Path,
+        judged_with: str,
+        places: Iterable[Location],
+        is_complete: Callable[[Outcome], bool] | None = None,
+    ) -> None:
         self._path = path
         self._judged_with = judged_with
+        self._is_complete = is_complete
         _refuse_without_pyarrow(path)
         with self._writing():
             self._journal = Journal(_journal_of(path))
@@ -100,7 +109,7 @@ class Results:
     def _standing(self, places: Mapping[str, Location]) -> Table:
         """What is there of earlier campaigns, and still so of `places`. Raises ResultsError."""
         try:
-            return self._still_so(self._read(), _journaled(self._journal), places)
+            return self._complete(self._still_so(self._read(), _journaled(self._journal), places))
         except (UnicodeDecodeError, MemoryError) as error:
             raise _damaged(self._path, str(error)) from None
 
@@ -118,6 +127,15 @@ class Results:
             and (number >= len(saved) or row["recording"] not in again)
         ]
         return both.take(pyarrow.array(standing, "int64"))
+
+    def _complete(self, table: Table) -> Table:
+        """The rows of the recordings of which all is there. Raises ResultsError."""
+        import pyarrow
+
+        if self._is_complete is None:
+            return table
+        complete = {each.place.name for each in _outcomes(self._path, table) if self._is_complete(each)}
+        return table.filter(pyarrow.array([name in complete for name in table.column("recording").to_pylist()], "bool"))
 
     def _stands(self, row: Row, place: Location | None) -> bool:
         """Whether a row about the recording at `place` is still valid."""

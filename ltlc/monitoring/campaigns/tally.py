@@ -79,12 +79,14 @@ class Tally:
     errors: list[tuple[str, str]] = field(default_factory=list)
     kept: int = 0
     again: int = 0
+    extracts: int = 0
 
     def add(self, outcome: Outcome, is_kept: bool = False) -> None:
         """Count a recording; one that `is_kept` was judged by an earlier campaign."""
         self.recordings += 1
         self.kept += is_kept
         self.again += outcome.tries > 1
+        self.extracts += len(outcome.extracts)
         self.codes[outcome.exit_code] += 1
         if outcome.error is not None:
             self.errors.append((outcome.place.name, str(outcome.error["message"])))
@@ -141,4 +143,6 @@ def brief(outcome: Outcome) -> str:
     parts = [f"{kinds.count(kind)} {kind.value}" for kind in Result if kind in kinds]
     if outcome.error is not None:
         parts.append(f"{'judged up to the damage' if outcome.is_judged else 'not judged'}: {outcome.error['message']}")
+    if outcome.not_cut:
+        parts.append(f"an extract is missing: {outcome.not_cut}")
     return reports.printable(f"{outcome.place.name}: {', '.join(parts)}")

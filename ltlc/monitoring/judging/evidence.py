@@ -211,6 +211,8 @@ class _Judged:
         began = self.session.began
         if began is None or self.session.time is None:
             return NotCovered(of.label, "the recording has no messages")
+        if isinstance(self.recording, BagRecording) and self.recording.is_flight_log:
+            return NotCovered(of.label, "the reader that shares nothing with ltlc does not read flight logs")
         if unread := self._unread(evidence, of):
             return NotCovered(of.label, unread)
         if track.slices is not None and track.slices.left_out:

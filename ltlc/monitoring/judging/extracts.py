@@ -18,9 +18,10 @@ from ltlc.semantics.verdicts import Verdict
 class Extract:
     """The part of a recording from `since` to `until`, both included, in which a property was violated, `last` then.
 
-    It gets the `name` of a file, and `text` says of which violations it is.
+    The property is the one with the `label`. It gets the `name` of a file, and `text` says of which violations it is.
     """
 
+    label: str
     name: str
     text: str
     since: Nanoseconds
@@ -51,6 +52,7 @@ def extracts(session: Session, before: Nanoseconds, after: Nanoseconds) -> Itera
             if part is parts[-1] and len(found) >= MOST:
                 text += f" (violations after the first {MOST} are not looked for)"
             yield Extract(
+                track.property.label,
                 f"{name}{when.replace(' ', '')}.mcap",
                 text,
                 since,

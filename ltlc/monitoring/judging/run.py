@@ -41,6 +41,7 @@ from ltlc.specification.specification import PropertySpecification, Specificatio
 
 if TYPE_CHECKING:
     from ltlc.assurance.evidence.document import Document
+    from ltlc.monitoring.judging.cutting import Cut, Cutting
     from ltlc.monitoring.judging.evidence import Evidence
     from ltlc.monitoring.judging.whole_runs import WholeRuns
     from ltlc.monitoring.letters import Letters
@@ -58,7 +59,7 @@ class RunReport:
     topic who defines its messages. `blocks` judged the session, if anything could be read. The `specification` is what
     was judged by. The recording is what is in the `file`, if it is in one; its SHA-256 is taken for a document.
     There is `evidence` if it was asked for and all could be read. It `is_part` if only the rows of some time were asked
-    for.
+    for. If extracts were asked for, they have been `cut`.
     """
 
     recording: str
@@ -74,11 +75,12 @@ class RunReport:
     file: Path | None = None
     evidence: Document | None = None
     is_part: bool = False
+    cut: Cut | None = None
 
     @property
     def exit_code(self) -> int:
         """0 all hold; 1 one is violated; 2 unusable or damaged; 3 none violated, but one is unmet or never started."""
-        if self.session is None or self.is_damaged:
+        if self.session is None or self.is_damaged or (self.cut is not None and self.cut.error):
             return 2
         left_out = any(slices.left_out for slices in self.session.sliced)
         return reports.exit_code([track.verdict for track in self.session.tracks], left_out)
@@ -111,10 +113,14 @@ class RunReport:
             document |= {"end": None if end is None else seconds(end), "end_ns": end}
             for each, track in zip(document["properties"], self.session.tracks, strict=True):
                 each.update(violations_report(self.session, track))
+                if self.cut is not None:
+                    each["extracts"] = list(self.cut.written[track.property.label])
         document["is_damaged"] = self.is_damaged
         document["is_part"] = self.is_part
         document["definitions"] = dict(self.definitions)
         document["diagnostics"] = self._diagnostics()
+        if self.cut is not None:
+            document["cut"] = self.cut.document()
         document["provenance"] = self.provenance()
         return document
 
@@ -198,7 +204,7 @@ class Judge:
     Rows are taken from the time `reading.since` on, up to and including `reading.until`. `remarks` are on the monitors,
     and stand in each report before those on the recording. It `finds_all` violations of a property, or the first one.
     The documents of its reports have the SHA-256 of the recording if it is `hashed`, which takes a moment.
-    With `evidence` a report has that of its recording.
+    With `evidence` a report has that of its recording. With `cutting`, extracts of recordings are written.
     """
 
     compiled: Sequence[Compiled]
@@ -211,9 +217,13 @@ class Judge:
     finds_all: bool = True
     hashed: bool = True
     evidence: Evidence | None = None
+    cutting: Cutting | None = None
 
-    def judge(self, path: Path, watchers: Sequence[Watcher] = ()) -> RunReport:
-        """What the recording at `path` shows. `watchers` get what was judged, block by block."""
+    def judge(self, path: Path, watchers: Sequence[Watcher] = (), name: str = "") -> RunReport:
+        """What the recording at `path` shows, which has a `name` among others.
+
+        `watchers` get what was judged, block by block.
+        """
         try:
             recording = self.open(path, self.signals, self.reading)
         except RecordingError as error:
@@ -255,6 +265,7 @@ class Judge:
             recording.definitions,
             judged,
             evidence=evidence,
+            cut=None if judged is None or self.cutting is None else self.cutting.cut(session, path, name),
             **self._made_of(path),
         )
 

@@ -16,7 +16,7 @@ from ltlc.base.source import Source
 from ltlc.inputs.messages.definitions import MessageTypes
 from ltlc.inputs.recordings.bags.compressed import portions
 from ltlc.inputs.recordings.bags.definitions import GIVEN, RECORDING, NonsenseError, distribution_name
-from ltlc.inputs.recordings.bags.folders import bag_at, is_bag, is_packed, opened
+from ltlc.inputs.recordings.bags.folders import bag_at, is_bag, is_flight_log, is_packed, opened
 from ltlc.inputs.recordings.bags.merging import Merger, Rows, change_of_clocks, watched
 from ltlc.inputs.recordings.bags.messages import LATEST, Batch, Messages, Storage, Topic
 from ltlc.inputs.recordings.bags.plan import Plan, absolute, of_all_files
@@ -77,6 +77,11 @@ class BagRecording:
     def topics(self) -> Mapping[str, Topic]:
         """All that was recorded, by name; where the types of files differ, a type has them all, with commas."""
         return self._topics
+
+    @property
+    def is_flight_log(self) -> bool:
+        """Whether PX4 has logged it, instead of ROS."""
+        return any(is_flight_log(file) for file in self._bag.files)
 
     @property
     def columns(self) -> tuple[str, ...]:

@@ -46,6 +46,11 @@ def is_bag(path: Path) -> bool:
     return _kind(path) in (*_STORAGES, *_ALONE)
 
 
+def is_flight_log(path: Path) -> bool:
+    """Whether a file is one of PX4's, by its name."""
+    return _kind(path) == ".ulg"
+
+
 def is_packed(path: Path) -> bool:
     """Whether a file is compressed as a whole."""
     return path.suffix.lower() == _PACKED
