@@ -54,6 +54,11 @@ def test_a_comparison_says_by_how_much_it_holds_or_fails(tmp_path: Path, text: s
     assert because(judged(tmp_path, text, {"time": 0, "v": left if left < 9e9 else "inf"})) == [line]
 
 
+def test_a_deadline_without_a_trigger_counts_from_the_first_moment_without_its_goal(tmp_path: Path) -> None:
+    report = judged(tmp_path, "always eventually v > 0 within 2 s", {"time": 0, "v": 0}, {"time": 3, "v": 0})
+    assert because(report) == ['more than 2 s since the first moment without "v > 0": true']
+
+
 ELEMENTS = st.lists(st.sampled_from([-2.0, -1.0, 0.0, 1.0, 2.0, 3.0, float("nan")]), min_size=1, max_size=9)
 
 

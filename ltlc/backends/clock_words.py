@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ltlc.semantics.durations import Nanoseconds, duration_text
 from ltlc.semantics.intervals import start_of
-from ltlc.semantics.ltl import to_text
+from ltlc.semantics.ltl import TRUE, to_text
 from ltlc.semantics.timed_atoms import (
     AfterOpened,
     Clock,
@@ -37,7 +37,8 @@ def _moment(clock: Clock) -> str:
         case EpisodeOpened(outer, opening):
             return f"{to_text(opening)} opened the scope{_inside(outer)}"
         case FirstOpen(outer, trigger, goal):
-            return f"the first {to_text(trigger)} without {to_text(goal)}{_inside(outer)}"
+            first = "moment" if trigger == TRUE else to_text(trigger)
+            return f"the first {first} without {to_text(goal)}{_inside(outer)}"
         case LastTrigger(outer, trigger):
             return f"the last {to_text(trigger)}{_inside(outer)}"
         case _:
