@@ -13,7 +13,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 
 from ltlc.automata import Budget, Exceeded, Task, translate_all
@@ -22,6 +21,7 @@ from ltlc.automata.folding import fold
 from ltlc.base.codes import diagnostic
 from ltlc.base.diagnostics import Diagnostic
 from ltlc.base.limits import Watch
+from ltlc.dataclass import dataclass
 from ltlc.program.machine import Machine
 from ltlc.program.properties import machine_of
 from ltlc.semantics.encodings import Encoding, encode

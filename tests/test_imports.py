@@ -13,6 +13,7 @@ import pytest
 PROJECT = Path(__file__).parents[1]
 
 ORDER = {
+    "dataclass": ["dataclass"],
     "semantics": ["semantics"],
     "base": [
         "base",

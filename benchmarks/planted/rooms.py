@@ -9,7 +9,8 @@ LOOSE = "loose modules"
 """The room of the modules that are in no folder."""
 
 ROOMS = {
-    LOOSE: "test_commands_*.py test_fixes.py test_language_check.py test_pytest_plugin.py test_render.py test_api.py",
+    LOOSE: "test_commands_*.py test_fixes.py test_language_check.py test_pytest_plugin.py test_render.py test_api.py"
+    " test_dataclass.py",
     "base": "test_commands_*.py test_fixes.py test_language_check.py test_pytest_plugin.py test_render.py test_api.py "
     "test_libraries.py test_release.py test_provenance.py",
     "analysis": "test_analysis_*.py",

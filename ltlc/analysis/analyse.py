@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Collection, Hashable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from itertools import chain, combinations
 from typing import Any
@@ -24,6 +24,7 @@ from ltlc.automata.batch import Known, once_for_each_shape
 from ltlc.base.diagnostics import Diagnostic, Label
 from ltlc.base.limits import Budget, Exceeded, Watch, run_all
 from ltlc.base.source import Span
+from ltlc.dataclass import dataclass
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.encodings import Encoding, encode
 from ltlc.semantics.ltl import Formula

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
+from ltlc.dataclass import dataclass
 from ltlc.specification.expressions import (
     Arithmetic,
     Call,

@@ -8,9 +8,10 @@ from __future__ import annotations
 import math
 import random
 from collections.abc import Hashable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from ltlc.analysis.groups import key, reads_of
+from ltlc.dataclass import dataclass
 from ltlc.semantics.words import Letter
 from ltlc.specification.atoms import Atom
 from ltlc.specification.evaluation import Single, Value, evaluate, letter

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Hashable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from itertools import product
 from math import prod
 from typing import Any
@@ -18,6 +18,7 @@ import z3  # noqa: TID251
 from ltlc.analysis import thresholds
 from ltlc.analysis.groups import grouped
 from ltlc.base.source import Span
+from ltlc.dataclass import dataclass
 from ltlc.semantics.finite import holds
 from ltlc.semantics.ltl import Atom as Proposition
 from ltlc.semantics.ltl import Formula

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 from ltlc.analysis.analyse import analyse
@@ -12,6 +11,7 @@ from ltlc.automata.batch import Known
 from ltlc.base.diagnostics import Diagnostic
 from ltlc.base.limits import Budget, Watch
 from ltlc.base.source import Source
+from ltlc.dataclass import dataclass
 from ltlc.frontend.language import in_order, load_text
 from ltlc.frontend.language.suppression import suppress, unsuppressed
 from ltlc.semantics.encodings import Encoding

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 from ltlc.analysis.groups import reads_of
 from ltlc.analysis.letters import Letters, steps_of
 from ltlc.analysis.thresholds import Values
+from ltlc.dataclass import dataclass
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.instants import Instant
 from ltlc.semantics.openings import open_part

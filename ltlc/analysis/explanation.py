@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from itertools import islice
 
@@ -13,6 +13,7 @@ from ltlc.analysis.search import all_shortest
 from ltlc.analysis.subjects import Study, Subject
 from ltlc.analysis.wording import listed
 from ltlc.base.limits import Budget, Exceeded, Watch, run_all
+from ltlc.dataclass import dataclass
 from ltlc.semantics.monitor import Monitor
 from ltlc.semantics.verdicts import Verdict
 from ltlc.semantics.words import Word

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Iterable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from ltlc.analysis.examples import Example
 from ltlc.base.codes import diagnostic
 from ltlc.base.diagnostics import Diagnostic, Help, Label
 from ltlc.base.source import Source, Span
+from ltlc.dataclass import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,13 +7,14 @@ only where several values meet in one atom, and some plain ones do not show that
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 
 from ltlc.analysis import thresholds
 from ltlc.analysis.doubles import reached, reached_plainly
 from ltlc.analysis.groups import grouped, reads_of
 from ltlc.analysis.thresholds import Values
+from ltlc.dataclass import dataclass
 from ltlc.semantics.alphabet import Alphabet, Group
 from ltlc.semantics.words import Letter, Word, letters_over
 from ltlc.specification.atoms import Atom

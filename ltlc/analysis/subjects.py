@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from itertools import chain
 from typing import TYPE_CHECKING
@@ -13,6 +12,7 @@ from ltlc.analysis.examples import Example, Setting, example_of
 from ltlc.analysis.letters import Letters
 from ltlc.analysis.predicates import possible_letter
 from ltlc.analysis.search import ALL_OPEN, Shut
+from ltlc.dataclass import dataclass
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.denotation import READINGS, satisfies
 from ltlc.semantics.encodings import Encoding, ManyClocksError, encode

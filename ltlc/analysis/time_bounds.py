@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 from ltlc.analysis.wording import all_parts, part_at, with_part
+from ltlc.dataclass import dataclass
 from ltlc.semantics import ltl
 from ltlc.semantics.durations import Nanoseconds, duration_text
 from ltlc.semantics.ltl import Formula

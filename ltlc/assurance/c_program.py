@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 
 from ltlc.assurance.compiled_program import CompiledProgram
 from ltlc.backends.c import Files
+from ltlc.dataclass import dataclass
 from ltlc.specification.shapes import Shape
 
 _TOKENS = re.compile(r'"(?:[^"\\]|\\.)*"|/\*.*?\*/|\w+|[^\s\w]', re.DOTALL)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Any
 
 from ltlc.assurance.c_program import CProgram
@@ -17,6 +16,7 @@ from ltlc.assurance.sliced_traffic import SlicedTraffic, Told
 from ltlc.assurance.traffic import Begun, Event, Settings, Together
 from ltlc.assurance.values import Samples
 from ltlc.compiler import Compiled
+from ltlc.dataclass import dataclass
 from ltlc.runtime.times import NEVER
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.verdicts import Verdict

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Sequence
-from dataclasses import dataclass
 
+from ltlc.dataclass import dataclass
 from ltlc.semantics import properties
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.certificate import DEPTH, WORK, Answer, Certificate, check, possible

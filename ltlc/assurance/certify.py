@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 from ltlc.assurance.residuals import Residuals
 from ltlc.assurance.strategies import Strategies
 from ltlc.assurance.tableau import MOST_EDGES, MOST_NODES, Tableau, TooLargeError
+from ltlc.dataclass import dataclass
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.certificate import Certificate, Level, Place, is_run
 from ltlc.semantics.diagrams import Diagram, rows

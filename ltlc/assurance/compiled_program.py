@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
@@ -13,6 +12,7 @@ from ltlc.assurance.replay import Run, Shown, Stepper
 from ltlc.assurance.traffic import Begun, Event, Heard, Passed, Quiet, Settings, Together, Traffic, rings
 from ltlc.assurance.values import PERIOD, RATE, Samples
 from ltlc.compiler import Compiled
+from ltlc.dataclass import dataclass
 from ltlc.runtime.times import NEVER
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.timed_atoms import timed_atoms

@@ -7,7 +7,6 @@ well. Permanent verdicts are tried on infinite continuations too, with the formu
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from itertools import chain, islice, pairwise
 
 from ltlc.assurance import random_runs
@@ -22,6 +21,7 @@ from ltlc.assurance.runs import (
 )
 from ltlc.assurance.timed_check import timed_check
 from ltlc.compiler import Compiled
+from ltlc.dataclass import dataclass
 from ltlc.semantics.denotation import READINGS, Reading, satisfies
 from ltlc.semantics.lasso import holds_on_lasso
 from ltlc.semantics.ltl import Formula

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from ltlc.assurance.courses import Courses
 from ltlc.assurance.values import LONGEST_HISTORY, Frames, Samples
 from ltlc.compiler import Compiled
+from ltlc.dataclass import dataclass
 from ltlc.semantics.words import Letter
 
 

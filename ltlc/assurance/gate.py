@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -24,6 +24,7 @@ from ltlc.assurance.values import Samples
 from ltlc.automata import Budget, Exceeded
 from ltlc.base.limits import Watch, run_all
 from ltlc.compiler import Compiled
+from ltlc.dataclass import dataclass
 from ltlc.semantics.certificate import Certificate
 from ltlc.specification.shapes import Shape
 

@@ -9,9 +9,9 @@ from __future__ import annotations
 import math
 from bisect import bisect_right
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from operator import itemgetter
 
+from ltlc.dataclass import dataclass
 from ltlc.program.excused import excused
 from ltlc.program.lowering import measured_parts, read
 from ltlc.semantics.durations import Nanoseconds

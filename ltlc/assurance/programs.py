@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import cached_property
 from types import ModuleType
 from typing import Any, Protocol
@@ -20,6 +20,7 @@ from ltlc.assurance.traffic import Begun, Event, Heard, Passed, Quiet, Said, Set
 from ltlc.assurance.values import RATE, Frame, Samples
 from ltlc.backends.python import standalone_classes
 from ltlc.compiler import Compiled
+from ltlc.dataclass import dataclass
 from ltlc.semantics.instants import Instant
 from ltlc.semantics.timed_atoms import timed_atoms
 from ltlc.specification.expressions import Current, Input, New, Signal

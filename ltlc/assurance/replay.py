@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cache
 from typing import Any, Generic, TypeVar
 
 from ltlc.base.files import ScratchError
 from ltlc.compiler import Compiled
+from ltlc.dataclass import dataclass
 from ltlc.semantics.denotation import opened, time_opens
 from ltlc.semantics.instants import Instant
 from ltlc.semantics.verdicts import Verdict

@@ -13,11 +13,11 @@ from __future__ import annotations
 import random
 from collections import deque
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from itertools import chain, islice, product
 
 from ltlc.assurance.residuals import Residuals
 from ltlc.compiler import Compiled
+from ltlc.dataclass import dataclass
 from ltlc.semantics.alphabet import Alphabet, Answers
 from ltlc.semantics.diagrams import Diagram, Diagrams, of_predicate
 from ltlc.semantics.ltl import TRUE, Formula

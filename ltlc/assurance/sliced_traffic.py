@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 from uuid import UUID
 
@@ -14,6 +13,7 @@ from ltlc.assurance.replay import Id
 from ltlc.assurance.traffic import Begun, Event, Follower, Heard, Passed, Quiet, Said, Settings
 from ltlc.assurance.values import Samples
 from ltlc.compiler import Compiled
+from ltlc.dataclass import dataclass
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.instants import Instant as Judged
 from ltlc.semantics.timed_run import TimedRun

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import random
 from collections.abc import Hashable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from ltlc.assurance.histories import Sample
 from ltlc.assurance.messages import Content, Messages, Path
+from ltlc.dataclass import dataclass
 from ltlc.inputs.messages.definitions import STRINGS, FieldType
 from ltlc.specification.evaluation import Single, Value
 from ltlc.specification.expressions import Bytes, Each, Field, New, OfSlice, Parallel, Signal, inputs, operands

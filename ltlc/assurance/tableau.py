@@ -8,11 +8,11 @@ set recurs. Nothing here is trusted: the certificate checker judges it.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
 from functools import partial
 from typing import NamedTuple
 
 from ltlc.assurance.residuals import Cube, Residuals
+from ltlc.dataclass import dataclass
 from ltlc.semantics.certificate import Level, Place, Progress
 from ltlc.semantics.diagrams import Diagram
 from ltlc.semantics.ltl import Until

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
@@ -13,6 +12,7 @@ from ltlc.assurance.sources import given, without_news
 from ltlc.assurance.values import Frame, Samples, instants_of
 from ltlc.assurance.walks import LONGEST_WALK, Heard, Walk, Walks
 from ltlc.compiler import Compiled
+from ltlc.dataclass import dataclass
 from ltlc.program.lowering import read
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.words import Letter

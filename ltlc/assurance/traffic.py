@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 
 from ltlc.assurance.histories import History, Instant, Origins, Sample, sample_text, topics_of
@@ -14,6 +14,7 @@ from ltlc.assurance.sources import Sources
 from ltlc.assurance.values import PERIOD, Frame, Frames, Samples
 from ltlc.assurance.walks import durations
 from ltlc.compiler import Compiled
+from ltlc.dataclass import dataclass
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.instants import Instant as Judged
 from ltlc.semantics.timed_atoms import counts_of, messages_of, news_that_counts, timed_atoms

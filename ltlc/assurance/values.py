@@ -6,11 +6,11 @@ import math
 import random
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from itertools import cycle, islice, pairwise
 
 from ltlc.assurance.histories import History, Instant, Origins, Sample, sample_text
 from ltlc.assurance.sources import Sources
+from ltlc.dataclass import dataclass
 from ltlc.semantics.instants import Instant as Judged
 from ltlc.semantics.words import Letter
 from ltlc.specification.atoms import nested

@@ -11,12 +11,12 @@ from __future__ import annotations
 import random
 from collections import Counter
 from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations
 from typing import NamedTuple, Protocol
 
 from ltlc.compiler import Compiled
+from ltlc.dataclass import dataclass
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.encodings import bounds
 from ltlc.semantics.instants import Instant, Observation, Step, instants, with_past

@@ -17,10 +17,10 @@ in tests for formulas of four atoms: it is exact but enumerates letters, 10 s at
 from __future__ import annotations
 
 from collections.abc import Hashable, Sequence
-from dataclasses import dataclass
 
 from ltlc.automata.errors import SpotMissing
 from ltlc.base.limits import Budget, Exceeded, Limit, Watch
+from ltlc.dataclass import dataclass
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.monitor import Monitor

@@ -7,11 +7,11 @@ enumerates letters, and nothing here knows Spot.
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from enum import Enum
 from itertools import pairwise
 from typing import Any, NamedTuple
 
+from ltlc.dataclass import dataclass
 from ltlc.semantics.alphabet import Alphabet, Group
 from ltlc.semantics.diagrams import Diagram, Diagrams, of_predicate
 from ltlc.semantics.ltl import Formula

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from enum import Enum
 from typing import Any
 
@@ -11,6 +11,7 @@ from ltlc.automata.engine import spot
 from ltlc.automata.languages import Languages
 from ltlc.automata.machine import Letters, Machine, letters_of, read_by, successor_sets, to_monitor
 from ltlc.automata.spot_translation import FAST, Session
+from ltlc.dataclass import dataclass
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.diagrams import Diagram
 from ltlc.semantics.ltl import And, Formula, Not, Or, conjunction, globally

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Protocol, assert_never
 
 from ltlc.backends.statements import conjunction, disjunction
 from ltlc.backends.trees import Call, Chain, Code, Infix, Prefix, Text
+from ltlc.dataclass import dataclass
 from ltlc.program import functions as f
 from ltlc.program.expressions import (
     Apply,

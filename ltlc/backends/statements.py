@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from ltlc.backends.trees import Chain, Code, Infix
+from ltlc.dataclass import dataclass
 
 _ASCENDING, _DESCENDING = ("<", "<="), (">", ">=")
 

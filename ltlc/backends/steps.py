@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence, Set
-from dataclasses import dataclass
 from typing import assert_never
 
 from ltlc.backends.statements import If, Statement, choice, conjunction, disjunction
 from ltlc.backends.trees import Chain, Code, Text
 from ltlc.backends.wording import Wording
+from ltlc.dataclass import dataclass
 from ltlc.program.machine import Base, Machine, Outcome
 from ltlc.semantics.monitor import Decision, Target, below
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Iterable
-from dataclasses import dataclass
+
+from ltlc.dataclass import dataclass
 
 LINE_LENGTH = 88
 INDENT = "    "

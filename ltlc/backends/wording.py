@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 
 from ltlc.backends.statements import Do, If, Statement, conjunction, disjunction
 from ltlc.backends.trees import Call, Chain, Code, Text
+from ltlc.dataclass import dataclass
 from ltlc.semantics.verdicts import Verdict
 
 MEANINGS = {

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from enum import Enum
 from typing import Any
 
 from ltlc.base.source import Source, Span
+from ltlc.dataclass import dataclass
 
 
 class Severity(Enum):

@@ -6,7 +6,7 @@ Everything in it follows from the inputs: it has no date, and no paths but those
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from functools import cache
 from hashlib import file_digest
 from pathlib import Path
@@ -15,6 +15,7 @@ from typing import Any
 from ltlc import __version__
 from ltlc.base.revision import commit_text
 from ltlc.base.source import Source
+from ltlc.dataclass import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 from hashlib import sha256
+
+from ltlc.dataclass import dataclass
 
 
 @dataclass(frozen=True, slots=True, order=True)

@@ -12,10 +12,10 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Container, Iterable, Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from ltlc.compiler import Compiled
+from ltlc.dataclass import dataclass
 from ltlc.runtime.courses import Course
 from ltlc.runtime.episodes import Episodes, latest
 from ltlc.runtime.properties import Failure, Moment, Monitor, MonitoredProperty

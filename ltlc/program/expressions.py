@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import assert_never
 
+from ltlc.dataclass import dataclass
 from ltlc.program.functions import ROWS, Nan, Primitive
 from ltlc.program.types import BOOL, DOUBLE, Type
 

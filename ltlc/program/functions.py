@@ -8,10 +8,10 @@ with this file, in `tests/test_program_functions.py` and `test_columns_functions
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from enum import Enum
 from typing import NamedTuple
 
+from ltlc.dataclass import dataclass
 from ltlc.program.types import BOOL, DOUBLE, INTEGER, SIGNED, SINGLE, UNSIGNED, Scalar, Type
 from ltlc.specification.functions import Function as Named
 

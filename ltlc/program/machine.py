@@ -31,10 +31,11 @@ text as code.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from enum import Enum
 from typing import Any, NamedTuple
 
+from ltlc.dataclass import dataclass
 from ltlc.program.expressions import Expression, Held, Kept, News, Read
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.monitor import Decision, Target

@@ -7,10 +7,10 @@ the products of the groups' valuations: thirty thresholds on one signal have thi
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from itertools import product
 from math import prod
 
+from ltlc.dataclass import dataclass
 from ltlc.semantics.ltl import TRUE, Atom, Formula, Not, conjunction, disjunction
 from ltlc.semantics.words import Letter, letters_over
 

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from contextlib import suppress
-from dataclasses import dataclass
 from typing import NamedTuple
 
+from ltlc.dataclass import dataclass
 from ltlc.semantics import finite
 from ltlc.semantics.conditions import (
     FALSE_CONDITION,

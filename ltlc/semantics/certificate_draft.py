@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 
+from ltlc.dataclass import dataclass
 from ltlc.semantics import properties
 from ltlc.semantics.certificate import Certificate, Level, Place, Progress
 from ltlc.semantics.certificate_text import Entry

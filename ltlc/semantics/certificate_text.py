@@ -10,8 +10,9 @@ the lines; `proofs/checker` reads the same.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 
+from ltlc.dataclass import dataclass
 from ltlc.semantics import ltl, properties
 from ltlc.semantics.certificate import Certificate, Place, Progress, all_members
 from ltlc.semantics.conditions import Conditions

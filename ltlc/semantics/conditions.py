@@ -7,10 +7,11 @@ number in a `Conditions`, so that comparing them costs nothing. The answers are 
 from __future__ import annotations
 
 from collections.abc import Callable, Container, Hashable, Iterable
-from dataclasses import dataclass, field
+from dataclasses import field
 from enum import Enum
 from typing import NamedTuple, TypeVar
 
+from ltlc.dataclass import dataclass
 from ltlc.semantics.ltl import TRUE, And, Atom, Formula, Next, Not, Or, Truth, Until, children
 from ltlc.semantics.words import Letter
 

@@ -5,10 +5,10 @@ Coq: `proofs/Program.v`, where its meaning is defined (`runs`).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from enum import Enum
 from typing import NamedTuple
 
+from ltlc.dataclass import dataclass
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.ltl import TRUE, Formula
 from ltlc.semantics.trackers import State

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 
+from ltlc.dataclass import dataclass
 from ltlc.semantics.certificate_words import (
     VERDICTS,
     WrongError,

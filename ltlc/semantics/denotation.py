@@ -9,9 +9,9 @@ the other encodings say in core LTL (`docs/language.md`), so that each encoding 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
 from typing import assert_never
 
+from ltlc.dataclass import dataclass
 from ltlc.semantics import finite, ltl
 from ltlc.semantics.diagrams import Diagrams, of_predicate
 from ltlc.semantics.durations import Nanoseconds

@@ -7,9 +7,9 @@ where the encodings agree and where they do not is proved in `proofs/Agreement.v
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from typing import assert_never
 
+from ltlc.dataclass import dataclass
 from ltlc.semantics import ltl
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.intervals import without_intervals

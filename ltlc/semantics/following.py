@@ -11,12 +11,12 @@ Coq: `proofs/Follows.v`, with the same names, and `Followed.v`, the proof that t
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
 from enum import Enum, auto
 from functools import partial
 from itertools import product
 from typing import NamedTuple, TypeVar
 
+from ltlc.dataclass import dataclass
 from ltlc.semantics.certificate import DEPTH, WORK
 from ltlc.semantics.conditions import FALSE_CONDITION, Bound, Condition, Conditions, Memory
 from ltlc.semantics.control import Base, Followed, Outcome, Pair, Setting, Stance, Way

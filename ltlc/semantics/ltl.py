@@ -9,9 +9,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from functools import reduce
 from typing import assert_never
+
+from ltlc.dataclass import dataclass
 
 
 class _Formula:

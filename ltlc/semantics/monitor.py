@@ -6,9 +6,9 @@ It is data, without Spot behind it: `ltlc.automata` makes monitors, the gate jud
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from typing import NamedTuple
 
+from ltlc.dataclass import dataclass
 from ltlc.semantics.verdicts import Verdict
 from ltlc.semantics.words import Letter
 

@@ -10,12 +10,12 @@ words of runs in time, and may have more.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from functools import lru_cache
 from itertools import permutations
 from math import inf
 from typing import Any, Generic, NamedTuple
 
+from ltlc.dataclass import dataclass
 from ltlc.semantics.reset_machine import Clocks, Letters, Move, Narrowed, ResetMachine
 from ltlc.semantics.timed_atoms import Age
 from ltlc.semantics.trackers import Case, Phase

@@ -7,8 +7,8 @@ empty; u[k..) is the rest of the word u from its step k, u[i..m) the segment bef
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
+from ltlc.dataclass import dataclass
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.ltl import TRUE, Formula, is_propositional
 from ltlc.semantics.ltl import atoms as formula_atoms

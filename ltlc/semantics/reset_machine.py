@@ -16,10 +16,10 @@ bounds, nor that the letter is held when one does, which operators of the past w
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Generic, NamedTuple, TypeVar
 
+from ltlc.dataclass import dataclass
 from ltlc.semantics.ltl import TRUE, And, Atom, Formula, Not, Or, conjunction
 from ltlc.semantics.timed_atoms import Clock, Previously, news_of, timed_atoms
 from ltlc.semantics.trackers import Case, Phase, Scope, State, scopes_around, trackers_of

@@ -20,8 +20,8 @@ change at any instant. Verdicts are right so, and may be later than they could b
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 
+from ltlc.dataclass import dataclass
 from ltlc.semantics.durations import Nanoseconds, duration_text
 from ltlc.semantics.ltl import Atom, Formula, subformulas, to_text
 

@@ -6,10 +6,10 @@ out, the gate judges what they wrote.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from enum import Enum
 from typing import NamedTuple
 
+from ltlc.dataclass import dataclass
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.monitor import Decision, Monitor, Target
 from ltlc.semantics.verdicts import Verdict

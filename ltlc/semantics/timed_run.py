@@ -9,8 +9,9 @@ from __future__ import annotations
 
 from bisect import bisect_left
 from collections.abc import Callable, Container, Iterable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
+from ltlc.dataclass import dataclass
 from ltlc.semantics import finite
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.instants import Instant

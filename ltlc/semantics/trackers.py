@@ -9,10 +9,11 @@ may take each of them (`reset_machine`).
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 from enum import Enum
 from typing import NamedTuple
 
+from ltlc.dataclass import dataclass
 from ltlc.semantics import finite
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.ltl import TRUE, Formula, Not, conjunction

@@ -6,8 +6,9 @@ A letter is the set of the atoms that hold at a step; every other atom is false 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from itertools import chain, combinations, product
+
+from ltlc.dataclass import dataclass
 
 Letter = frozenset[str]
 Word = tuple[Letter, ...]

@@ -18,9 +18,9 @@ double solves, may. Pairs are taken for doubles whatever their types: `u > w + 3
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from functools import partial
 
+from ltlc.dataclass import dataclass
 from ltlc.semantics.alphabet import Alphabet, Group
 from ltlc.semantics.words import Letter
 from ltlc.specification.atoms import Atom

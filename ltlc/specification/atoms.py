@@ -11,10 +11,11 @@ hundreds of drawn doubles give count as possible there, too.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, fields
+from dataclasses import fields
 from typing import Any
 
 from ltlc.base.source import Span
+from ltlc.dataclass import dataclass
 from ltlc.specification.expressions import Condition, Count, Expression, Opening, operands, subexpressions
 
 

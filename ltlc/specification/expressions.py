@@ -7,10 +7,11 @@ Vectors do not occur here: the resolver writes them out as their components.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 from enum import Enum
 from typing import assert_never
 
+from ltlc.dataclass import dataclass
 from ltlc.semantics.ltl import Formula
 from ltlc.specification.functions import Function
 from ltlc.specification.wire import DOUBLES, Numbers, double_or_integer

@@ -14,9 +14,9 @@ that is used here: what these rules allow is a valuation.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from typing import assert_never
 
+from ltlc.dataclass import dataclass
 from ltlc.semantics.words import Letter
 from ltlc.specification.expressions import Comparison, Relation
 

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Any
 
 from ltlc.base.source import Span
+from ltlc.dataclass import dataclass
 
 KNOWN = {
     "id": "the requirement's own id, unique across the files that are checked together",

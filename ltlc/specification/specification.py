@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from enum import Enum
 from functools import cached_property
 
 from ltlc.base.source import Source, Span
+from ltlc.dataclass import dataclass
 from ltlc.semantics import ltl, properties
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.durations import Nanoseconds

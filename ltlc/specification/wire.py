@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from enum import Enum
 from struct import Struct
+
+from ltlc.dataclass import dataclass
 
 EXACT = 2**53
 """Up to here, and down to minus this, every integer is a double."""

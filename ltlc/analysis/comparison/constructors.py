@@ -10,7 +10,6 @@ import shutil
 import tempfile
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
@@ -20,6 +19,7 @@ from ltlc.automata import translate, translate_by_progression
 from ltlc.automata.machine import Letters, Machine, letters_of, to_monitor, verdict_machine
 from ltlc.automata.spot_translation import Session
 from ltlc.base.limits import Budget, Exceeded, run_all
+from ltlc.dataclass import dataclass
 from ltlc.semantics import finite
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.ltl import Formula, Not, atoms, is_next_free

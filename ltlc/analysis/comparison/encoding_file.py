@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from ltlc.analysis.comparison.bounded import within
 from ltlc.analysis.comparison.equations import Equation, EquationError, parse_equation
@@ -25,6 +25,7 @@ from ltlc.base.diagnostics import Diagnostic
 from ltlc.base.limits import Budget
 from ltlc.base.nearest import did_you_mean
 from ltlc.base.source import Source, Span
+from ltlc.dataclass import dataclass
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.encodings import Encoding
 from ltlc.semantics.ltl import Atom, Not

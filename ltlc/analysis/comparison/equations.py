@@ -11,12 +11,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Collection, Mapping
-from dataclasses import dataclass
 
 from ltlc.base.codes import diagnostic
 from ltlc.base.diagnostics import Diagnostic
 from ltlc.base.nearest import did_you_mean
 from ltlc.base.source import Source, Span
+from ltlc.dataclass import dataclass
 from ltlc.semantics.encodings import relativise
 from ltlc.semantics.ltl import (
     FALSE,

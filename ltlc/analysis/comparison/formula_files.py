@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
 from ltlc.analysis.comparison.questions import question_of_formulas, unused_name
 from ltlc.analysis.comparison.results import Question
@@ -11,6 +10,7 @@ from ltlc.automata.spot_syntax import SpotSyntaxError, parse
 from ltlc.base.codes import diagnostic
 from ltlc.base.diagnostics import Diagnostic
 from ltlc.base.source import Source, Span
+from ltlc.dataclass import dataclass
 from ltlc.semantics.ltl import Formula
 
 NONE = "-"

@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import resource
 import subprocess
-from dataclasses import dataclass
 from functools import partial
 from itertools import count
 from pathlib import Path
 from typing import assert_never
 
 from ltlc.automata.machine import Letters, Machine, explore
+from ltlc.dataclass import dataclass
 from ltlc.semantics.diagrams import Diagram
 from ltlc.semantics.ltl import And, Atom, Formula, Next, Not, Or, Truth, Until, atoms
 from ltlc.semantics.words import Word

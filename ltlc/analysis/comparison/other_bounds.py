@@ -8,12 +8,13 @@ that lies among them, and joined with its neighbour where the monitor forgets th
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import NamedTuple
 
 from ltlc.analysis.time_bounds import with_bound
 from ltlc.automata import translate
+from ltlc.dataclass import dataclass
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.encodings import Encoding, encode

@@ -6,12 +6,12 @@ Every run that is shown is judged here first, and every claim that there is no s
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from itertools import islice
 
 from ltlc.analysis.comparison.results import Candidate, Confirmation, Relation
 from ltlc.analysis.comparison.shortest import representatives
 from ltlc.automata.queries import words_of
+from ltlc.dataclass import dataclass
 from ltlc.semantics import finite
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.durations import seconds_text

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import partial
 
 from ltlc.analysis.comparison.reference import Contradiction, Trials, check_separation, confirm, trial_letters
@@ -12,6 +11,7 @@ from ltlc.analysis.comparison.shortest import TooManyLoopsError, shortest_lasso,
 from ltlc.analysis.comparison.timed import TimedTrials, lasso_in_time, told, words_in_time
 from ltlc.analysis.examples import telling
 from ltlc.automata.queries import buchi, is_satisfiable, some_lasso, words_of
+from ltlc.dataclass import dataclass
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.ltl import And, Formula, Not
 from ltlc.semantics.monitor import Monitor

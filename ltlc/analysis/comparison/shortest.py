@@ -8,12 +8,12 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 from ltlc.automata.machine import Letter as Impossible
 from ltlc.automata.machine import Letters, Machine
 from ltlc.automata.queries import Buchi
+from ltlc.dataclass import dataclass
 from ltlc.semantics.diagrams import Diagram
 from ltlc.semantics.words import Lasso, Letter, Word
 

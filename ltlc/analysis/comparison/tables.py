@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 import string
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 
 from ltlc.analysis.comparison.reference import shown
 from ltlc.analysis.comparison.results import (
@@ -26,6 +25,7 @@ from ltlc.analysis.comparison.results import (
 )
 from ltlc.automata.queries import Size
 from ltlc.base.limits import Exceeded
+from ltlc.dataclass import dataclass
 from ltlc.semantics.durations import Nanoseconds, duration_text, seconds_text
 from ltlc.semantics.instants import Instant
 from ltlc.semantics.ltl import renamed

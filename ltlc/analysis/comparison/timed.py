@@ -7,7 +7,7 @@ of them; that some run does, only once there is one.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 from itertools import combinations, product
 
@@ -18,6 +18,7 @@ from ltlc.analysis.search import shortest
 from ltlc.assurance.walks import word_of
 from ltlc.automata.languages import Languages
 from ltlc.automata.queries import ending
+from ltlc.dataclass import dataclass
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.denotation import Reading, satisfies
 from ltlc.semantics.durations import Nanoseconds

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
 
 from ltlc.analysis.findings import Finding
 from ltlc.analysis.questions import (
@@ -32,6 +31,7 @@ from ltlc.analysis.questions import (
     waits_for_topic,
 )
 from ltlc.analysis.subjects import Study, Subject
+from ltlc.dataclass import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 from ltlc.analysis.groups import key, reads_of
 from ltlc.analysis.subjects import Study, Subject
 from ltlc.analysis.wording import part_text
 from ltlc.base.source import Span
+from ltlc.dataclass import dataclass
 from ltlc.semantics import ltl
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.properties import AfterUntil, Property

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 from ltlc.analysis import reasons
 from ltlc.analysis.findings import Finding
@@ -12,6 +11,7 @@ from ltlc.analysis.subjects import Study, Subject
 from ltlc.analysis.wording import part_at, part_text
 from ltlc.automata.languages import Language
 from ltlc.base.diagnostics import Label
+from ltlc.dataclass import dataclass
 from ltlc.semantics import ltl
 from ltlc.semantics.ltl import Formula, eventually
 from ltlc.semantics.properties import After, AfterUntil, Eventually, Now, Property, Until

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from html import unescape
 from pathlib import Path, PurePath
 
@@ -17,6 +17,7 @@ from ltlc.backends.ament.metadata import Metadata, metadata_of
 from ltlc.backends.trees import prose
 from ltlc.base.source import Source
 from ltlc.compiler import Compiled
+from ltlc.dataclass import dataclass
 from ltlc.specification.specification import Specification
 
 MOST_CHARACTERS = 100_000

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from ltlc.dataclass import dataclass
 
 MOST_SHOWN = 100
 """How many characters of a line are shown."""

@@ -7,7 +7,6 @@ same algorithm in Python; `proofs/checker/judge` is that of Coq.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import NamedTuple
 
 from ltlc.assurance.evidence.parts import (
@@ -21,6 +20,7 @@ from ltlc.assurance.evidence.parts import (
     next_part,
     open_part,
 )
+from ltlc.dataclass import dataclass
 from ltlc.semantics import finite
 from ltlc.semantics.certificate import Certificate
 from ltlc.semantics.durations import Nanoseconds

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import NamedTuple
 
 from ltlc.assurance.evidence.document import Claim, NotCovered
+from ltlc.dataclass import dataclass
 
 
 class Check(NamedTuple):

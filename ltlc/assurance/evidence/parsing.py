@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 from ltlc.assurance.evidence.document import (
     END,
@@ -26,6 +25,7 @@ from ltlc.assurance.evidence.document import (
     printed,
 )
 from ltlc.base.provenance import FileDigest
+from ltlc.dataclass import dataclass
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.verdicts import Verdict
 

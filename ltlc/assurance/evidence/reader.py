@@ -5,12 +5,12 @@ from __future__ import annotations
 import subprocess
 import sys
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from ltlc.assurance.evidence.document import Claim, Document, printed
 from ltlc.assurance.evidence.parsing import UnreadableEvidence, parsed
+from ltlc.dataclass import dataclass
 
 READER = Path(__file__).with_name("recorded.py")
 REFUSED, NOT_COVERED = "REFUSED: ", "NOT COVERED: "

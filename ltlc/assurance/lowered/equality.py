@@ -9,7 +9,6 @@ with what they do, as decision diagrams. What its atoms and guards say is compar
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from itertools import zip_longest
 from typing import NamedTuple
 
@@ -22,6 +21,7 @@ from ltlc.assurance.lowered.truths import DiffersError
 from ltlc.assurance.reading.outcomes import Difference
 from ltlc.backends.python.code import flat
 from ltlc.backends.python.expressions import python_speller
+from ltlc.dataclass import dataclass
 from ltlc.program.expressions import Expression, reads_of
 from ltlc.program.machine import Age, Base, Clock, Machine, Outcome
 from ltlc.program.normal import reached

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 
 from ltlc.assurance.lowered.clocks import Moment
 from ltlc.assurance.lowered.meaning import compared, said, truth
 from ltlc.assurance.lowered.truths import DiffersError, Truths
+from ltlc.dataclass import dataclass
 from ltlc.semantics.diagrams import Diagram, Diagrams, of_diagrams, rows
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.monitor import Monitor

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from ltlc.assurance.reading.counted import counted, presumed
 from ltlc.assurance.reading.expressions import Reader, Target
@@ -32,6 +32,7 @@ from ltlc.assurance.reading.trees import (
     While,
     shown,
 )
+from ltlc.dataclass import dataclass
 from ltlc.program.expressions import Apply as Applied
 from ltlc.program.expressions import Expression, Held, Kept, News, Recent
 from ltlc.program.functions import Primitive

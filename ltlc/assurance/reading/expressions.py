@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import accumulate, pairwise
 from typing import NamedTuple, assert_never
 
 from ltlc.assurance.reading import trees as t
 from ltlc.assurance.reading.trees import NotUnderstoodError, shown
+from ltlc.dataclass import dataclass
 from ltlc.program import functions as f
 from ltlc.program.expressions import (
     Apply,

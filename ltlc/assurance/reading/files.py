@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 from ltlc.assurance.reading.differences import difference
@@ -16,6 +16,7 @@ from ltlc.assurance.reading.python import PythonFile, without_docstring
 from ltlc.assurance.reading.signals import PYTHON, data, input_data, require_signals
 from ltlc.assurance.reading.slicing import require_slicing
 from ltlc.assurance.reading.trees import NotUnderstoodError
+from ltlc.dataclass import dataclass
 from ltlc.program.expressions import Held, News, Read, Recent, reads_of
 from ltlc.program.machine import Excused, Machine
 from ltlc.specification.specification import PropertySpecification

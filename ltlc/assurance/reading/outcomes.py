@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Protocol
 
+from ltlc.dataclass import dataclass
 from ltlc.semantics.words import Letter
 
 

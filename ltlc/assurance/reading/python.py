@@ -5,7 +5,6 @@ from __future__ import annotations
 import ast
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from ltlc.assurance.reading.names import FileNames
 from ltlc.assurance.reading.trees import (
@@ -31,6 +30,7 @@ from ltlc.assurance.reading.trees import (
     Variable,
     While,
 )
+from ltlc.dataclass import dataclass
 
 _OPERATORS: dict[type[ast.AST], str] = {
     **dict(zip((ast.Add, ast.Sub, ast.Mult, ast.Div, ast.USub), "+-*/-", strict=True)),

@@ -8,9 +8,9 @@ and `machines` say, once for all targets. Nothing here knows of monitors.
 from __future__ import annotations
 
 from collections.abc import Hashable, Mapping
-from dataclasses import dataclass
 from typing import assert_never
 
+from ltlc.dataclass import dataclass
 from ltlc.program.types import Type
 from ltlc.semantics.verdicts import Verdict
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from xml.etree import ElementTree
+
+from ltlc.dataclass import dataclass
 
 
 @dataclass(frozen=True, slots=True)

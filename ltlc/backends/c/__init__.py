@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import PurePath
 
@@ -26,6 +25,7 @@ from ltlc.backends.templates import template
 from ltlc.backends.trees import INDENT, Text
 from ltlc.backends.wording import MEANINGS
 from ltlc.compiler import Compiled
+from ltlc.dataclass import dataclass
 from ltlc.program.lowering import undefined_parts
 from ltlc.runtime.times import NEVER, SECOND
 from ltlc.semantics.verdicts import Verdict

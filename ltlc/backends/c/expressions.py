@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from ltlc.backends.c.code import lines, literal, mentions, unused
 from ltlc.backends.c.functions import of_array
@@ -15,6 +15,7 @@ from ltlc.backends.operators import filled, flat
 from ltlc.backends.spelling import NotInTargetError, Speller, Target
 from ltlc.backends.statements import If, conjunction
 from ltlc.backends.trees import INDENT, Call, Chain, Code, Prefix, Text
+from ltlc.dataclass import dataclass
 from ltlc.program.expressions import Count, Each, Expression, Literal, Read, Slice, reads_of
 from ltlc.program.functions import ROWS, Primitive, Spelling, Types
 from ltlc.program.types import DOUBLE, Scalar, Type

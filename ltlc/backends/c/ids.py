@@ -6,7 +6,6 @@ What a file has of it, or of instances that messages open, and what is refused o
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from ltlc.backends.c.code import lines
 from ltlc.backends.c.instances import OpenTable, compared
@@ -16,6 +15,7 @@ from ltlc.backends.spelling import NotInTargetError
 from ltlc.backends.statements import Do, conjunction, disjunction
 from ltlc.backends.trees import INDENT, Text
 from ltlc.compiler import Compiled
+from ltlc.dataclass import dataclass
 from ltlc.program.as_new import states_as_new
 from ltlc.program.lowering import read
 from ltlc.program.types import Scalar, type_of

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 from ltlc.backends.c.code import lines
 from ltlc.backends.c.monitors import PropertyWriter
 from ltlc.backends.c.signals import Named
 from ltlc.backends.statements import Do, conjunction, disjunction
 from ltlc.backends.trees import INDENT, Call, Chain, Code, Text
+from ltlc.dataclass import dataclass
 from ltlc.program.types import Scalar
 from ltlc.specification.specification import Instances, topics_of
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from ltlc.backends.c.code import comment, lines, unused
 from ltlc.backends.c.expressions import C
@@ -14,6 +13,7 @@ from ltlc.backends.inputs import is_from_session
 from ltlc.backends.statements import Do, If, Statement, conjunction, disjunction
 from ltlc.backends.trees import INDENT, Chain, Code, Text
 from ltlc.compiler import Compiled
+from ltlc.dataclass import dataclass
 from ltlc.specification.specification import topics
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 
 from ltlc.backends.c.code import comment
 from ltlc.backends.c.expressions import C
@@ -11,6 +10,7 @@ from ltlc.backends.c.names import member_names
 from ltlc.backends.inputs import origin
 from ltlc.backends.names import input_name, variable
 from ltlc.backends.trees import INDENT, Code, Text
+from ltlc.dataclass import dataclass
 from ltlc.program.lowering import read
 from ltlc.program.types import type_of
 from ltlc.specification.expressions import Field, Input, Match, New, Parallel, Signal

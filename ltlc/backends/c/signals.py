@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 
 from ltlc.backends.c.code import lines
 from ltlc.backends.c.expressions import C
@@ -14,6 +13,7 @@ from ltlc.backends.names import Names, variable
 from ltlc.backends.operators import flat as text_of
 from ltlc.backends.statements import Do, If, Statement, conjunction, disjunction
 from ltlc.backends.trees import INDENT, Chain, Code, Text
+from ltlc.dataclass import dataclass
 from ltlc.program.lowering import double, first_value, has_sample, lowered, read, undefined_parts
 from ltlc.program.types import BOOL, DOUBLE, TEXT, Type, kept_as, recent_of
 from ltlc.specification import expressions as e

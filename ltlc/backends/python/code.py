@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 
 from ltlc.backends.notation import Notation, clauses
 from ltlc.backends.statements import Do, If, Statement
 from ltlc.backends.trees import INDENT, LINE_LENGTH, Call, Chain, Code, Each, Infix, Prefix
+from ltlc.dataclass import dataclass
 
 _PYTHON = Notation({}, negation=2, contexts={}, chains=True)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from ltlc.backends.counts import Counting, ages, countings, heard, noted, presumed
 from ltlc.backends.names import Names, input_name
@@ -16,6 +16,7 @@ from ltlc.backends.statements import Do, If, Statement, conjunction, disjunction
 from ltlc.backends.steps import Late, Steps, clock_names, scheduled
 from ltlc.backends.trees import INDENT, LINE_LENGTH, Call, Chain, Code, Prefix, Text, prose, wrapped
 from ltlc.compiler import Compiled
+from ltlc.dataclass import dataclass
 from ltlc.program.expressions import Expression, Kept, News, reads_of
 from ltlc.program.lowering import condition, read
 from ltlc.program.machine import Clock, Instead, Machine

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from importlib import import_module
 from pathlib import PurePath
 from typing import assert_never
@@ -27,6 +27,7 @@ from ltlc.backends.spelling import Speller
 from ltlc.backends.trees import INDENT, Code, prose
 from ltlc.base.source import Source
 from ltlc.compiler import Compiled
+from ltlc.dataclass import dataclass
 from ltlc.program.as_new import states_as_new
 from ltlc.program.expressions import Apply, reads_of
 from ltlc.program.expressions import Expression as Value

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from functools import cached_property
 
 from ltlc.backends.clock_words import lateness
@@ -12,6 +11,7 @@ from ltlc.backends.spelling import Speller
 from ltlc.backends.steps import clock_names
 from ltlc.backends.trees import Call, Code, Text
 from ltlc.compiler import Compiled
+from ltlc.dataclass import dataclass
 from ltlc.program import lowering
 from ltlc.program.properties import Words, words
 from ltlc.semantics.timed_atoms import Age, Clock, Historically

@@ -5,11 +5,11 @@ from __future__ import annotations
 import ast
 import importlib.util
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
 from ltlc.backends.trees import INDENT, LINE_LENGTH
+from ltlc.dataclass import dataclass
 
 ROS = ("rclpy", "rcl_interfaces", "diagnostic_msgs", "std_msgs")
 """The packages that a node needs whatever it monitors."""

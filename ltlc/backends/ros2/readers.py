@@ -5,12 +5,13 @@ from __future__ import annotations
 import keyword
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from ltlc.backends.names import Names, variable
 from ltlc.backends.python.code import Group, layout, literal, tuple_of
 from ltlc.backends.trees import INDENT, LINE_LENGTH, Call, Text, prose
 from ltlc.compiler import Compiled
+from ltlc.dataclass import dataclass
 from ltlc.specification.expressions import Bytes, Each, Field, Match, Parallel, PathStep
 from ltlc.specification.specification import fields
 

@@ -6,7 +6,6 @@ The functions are those of emitted C, printed as Rust.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import PurePath
 
 from ltlc import __version__
@@ -25,6 +24,7 @@ from ltlc.backends.templates import template
 from ltlc.backends.trees import INDENT, prose
 from ltlc.backends.wording import MEANINGS
 from ltlc.compiler import Compiled
+from ltlc.dataclass import dataclass
 from ltlc.program.expressions import Apply, Expression, parts
 from ltlc.program.functions import ROWS, Exactness, Primitive
 from ltlc.program.lowering import has_sample, lowered

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from pycparser import c_ast
 from pycparser.c_ast import Node
@@ -14,6 +14,7 @@ from ltlc.backends.rust.names import spelled
 from ltlc.backends.rust.trees import Trees
 from ltlc.backends.rust.types import Types
 from ltlc.backends.trees import Call, Chain, Code, Infix, Prefix, Text
+from ltlc.dataclass import dataclass
 from ltlc.semantics.verdicts import Verdict
 
 _OPERATORS = {"&&": "and", "||": "or"}

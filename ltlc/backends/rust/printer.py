@@ -6,7 +6,7 @@ A function that is given a pointer to a struct is a method of that. Counters wra
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from pycparser import c_ast
 from pycparser.c_ast import Decl, FuncDef, Node
@@ -19,6 +19,7 @@ from ltlc.backends.rust.trees import Trees
 from ltlc.backends.rust.types import Types
 from ltlc.backends.statements import Do, If, Statement
 from ltlc.backends.trees import INDENT, Call, Text
+from ltlc.dataclass import dataclass
 
 
 @dataclass(frozen=True)

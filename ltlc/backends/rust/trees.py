@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cached_property
 
 from pycparser.c_ast import Decl, FuncDef, Node, PtrDecl, Struct, Typedef
 from pycparser.c_parser import CParser
 
 from ltlc.backends.c import Files
+from ltlc.dataclass import dataclass
 from ltlc.program.types import Scalar
 
 _TYPES = ("bool", "size_t", *(f"{scalar.value}_t" for scalar in Scalar if scalar.bits))

@@ -6,12 +6,12 @@ analyses find, 7 monitors and the gate, 8 recordings, 9 files. `CODE.md` beside 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from ltlc.base.diagnostics import Diagnostic, Help, Label, Severity
 from ltlc.base.source import Source, Span
+from ltlc.dataclass import dataclass
 
 ERROR, WARNING, NOTE = Severity.ERROR, Severity.WARNING, Severity.NOTE
 

@@ -23,11 +23,12 @@ import time
 import warnings
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from pathlib import Path
 from typing import Any, NoReturn, Self, TypeVar
 
 from ltlc.base.limits.budget import Budget, Exceeded, Limit
+from ltlc.dataclass import dataclass
 
 Result = TypeVar("Result")
 

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 from unicodedata import category, combining, east_asian_width
 
 from ltlc.base.diagnostics import Diagnostic, Label, Severity
 from ltlc.base.render.table import example_lines
 from ltlc.base.source import Source
+from ltlc.dataclass import dataclass
 
 TAB = 4
 """Every how many columns a tab stops."""

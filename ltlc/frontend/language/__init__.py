@@ -5,13 +5,13 @@ from __future__ import annotations
 import sys
 from codecs import BOM_UTF8
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
 from ltlc.base.codes import diagnostic
 from ltlc.base.diagnostics import Diagnostic, Severity
 from ltlc.base.source import Source, Span
+from ltlc.dataclass import dataclass
 from ltlc.frontend.language.names import Checker
 from ltlc.frontend.language.resolve import checker_of, sound_part
 from ltlc.frontend.syntax.parse import parse

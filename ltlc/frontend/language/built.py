@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import partial
 from itertools import count
 
 from ltlc.base.diagnostics import Label
 from ltlc.base.source import Span
+from ltlc.dataclass import dataclass
 from ltlc.frontend.syntax import tree as syntax
 from ltlc.semantics import ltl
 from ltlc.semantics.durations import Nanoseconds

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass
 
 from ltlc.base.diagnostics import Diagnostic, Help, Label
 from ltlc.base.fixes import respell, writing
 from ltlc.base.source import Span
+from ltlc.dataclass import dataclass
 from ltlc.frontend.language.built import Context
 from ltlc.frontend.language.durations import LONGEST, nanoseconds, of_seconds
 from ltlc.frontend.language.evaluate import literal, value

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import assert_never
 
 from ltlc.base.codes import diagnostic
 from ltlc.base.diagnostics import Diagnostic, Label
 from ltlc.base.source import Span
+from ltlc.dataclass import dataclass
 from ltlc.frontend.language.built import Built, Context, apply
 from ltlc.frontend.language.evaluate import value
 from ltlc.frontend.language.names import Checker

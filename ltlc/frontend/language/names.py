@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from ltlc.base.codes import diagnostic
 from ltlc.base.diagnostics import Diagnostic, Help, Label, Severity
 from ltlc.base.source import Source, Span
+from ltlc.dataclass import dataclass
 from ltlc.frontend.language.signals import SIMULATORS, Thing
 from ltlc.frontend.language.values import Value
 from ltlc.frontend.syntax import tree as syntax

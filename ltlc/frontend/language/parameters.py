@@ -7,13 +7,14 @@ properties, which are distinguished by it.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import fields, replace
 from enum import Enum
 from typing import Any
 
 from ltlc.base.codes import diagnostic
 from ltlc.base.diagnostics import Diagnostic, Label
 from ltlc.base.source import Source, Span
+from ltlc.dataclass import dataclass
 from ltlc.frontend.syntax import tree as syntax
 from ltlc.semantics.durations import Nanoseconds
 

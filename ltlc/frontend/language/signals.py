@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
+from ltlc.dataclass import dataclass
 from ltlc.frontend.language.values import (
     Array,
     Orientation,

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
 from ltlc.base.codes import CODES, diagnostic, find
 from ltlc.base.diagnostics import Diagnostic, Fix, Help, Severity
 from ltlc.base.source import Source, Span
+from ltlc.dataclass import dataclass
 from ltlc.frontend.syntax import tree as syntax
 from ltlc.frontend.syntax.parse import parse
 from ltlc.specification.specification import Specification

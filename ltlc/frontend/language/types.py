@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 from ltlc.base.codes import diagnostic
 from ltlc.base.diagnostics import Diagnostic, Help
 from ltlc.base.fixes import respell, write, writing
 from ltlc.base.nearest import is_slip
 from ltlc.base.source import Source, Span
+from ltlc.dataclass import dataclass
 from ltlc.frontend.syntax import tree as syntax
 from ltlc.inputs.messages.definitions import PLACEHOLDER, STRINGS, FieldType, Message, MessageTypes
 from ltlc.specification.expressions import Bytes, Each, Field, PathStep

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from ltlc.base.source import Span
+from ltlc.dataclass import dataclass
 from ltlc.semantics import ltl
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.specification.evaluation import apply, calculate

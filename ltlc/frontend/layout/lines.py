@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import groupby, pairwise
 
 from ltlc.base.source import Span
+from ltlc.dataclass import dataclass
 from ltlc.frontend.layout.pieces import Comment, Piece
 from ltlc.frontend.syntax import tree as syntax
 

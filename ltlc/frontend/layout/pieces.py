@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 
 from ltlc.base.source import Source, Span
+from ltlc.dataclass import dataclass
 from ltlc.frontend.syntax import tree as syntax
 from ltlc.frontend.syntax.lexer import END, Token
 

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from decimal import Decimal
 
+from ltlc.dataclass import dataclass
 from ltlc.semantics.durations import Nanoseconds, duration_text
 from ltlc.specification.text import outwards
 from ltlc.specification.wire import DOUBLES, Kind, Numbers

@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
+from ltlc.dataclass import dataclass
 from ltlc.frontend.language.types import values_of
 from ltlc.frontend.starter.measured import Probe
 from ltlc.inputs.messages.definitions import FieldType, MessageTypes

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from textwrap import wrap
 
 from ltlc.base.source import quoted
+from ltlc.dataclass import dataclass
 from ltlc.frontend.starter.measured import LEAST_REGULAR, Arrivals, Measured, Probe, Values, duration, time_limit
 from ltlc.frontend.starter.recipes import Recipe, Rule
 from ltlc.semantics.durations import UNITS

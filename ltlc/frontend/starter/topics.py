@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 
+from ltlc.dataclass import dataclass
 from ltlc.inputs.messages.texts import comments_in
 from ltlc.inputs.recordings import open_recording
 from ltlc.inputs.recordings.bags import BagRecording

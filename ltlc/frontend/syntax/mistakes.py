@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Sequence, Set
-from dataclasses import dataclass
 
 from ltlc.base.codes import diagnostic
 from ltlc.base.diagnostics import Diagnostic, Fix, Help, Label
 from ltlc.base.fixes import put, write, writing
 from ltlc.base.source import Source, Span
+from ltlc.dataclass import dataclass
 from ltlc.frontend.syntax.lexer import END, KEYWORDS, TEMPORAL, Token, skip_blank
 
 FORMS = {

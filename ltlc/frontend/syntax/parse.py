@@ -8,7 +8,7 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cache
 from itertools import pairwise
 from pathlib import Path
@@ -18,6 +18,7 @@ from ltlc.base.codes import diagnostic
 from ltlc.base.diagnostics import Diagnostic, Help
 from ltlc.base.fixes import uncertain, writing
 from ltlc.base.source import Source, Span
+from ltlc.dataclass import dataclass
 from ltlc.frontend.syntax import build, misspelled
 from ltlc.frontend.syntax import tree as syntax
 from ltlc.frontend.syntax.lexer import END, TEMPORAL, Token, next_token, skip_blank

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 from functools import cached_property
 
+from ltlc.dataclass import dataclass
 from ltlc.semantics.durations import UNITS
 
 

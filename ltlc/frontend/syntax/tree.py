@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from ltlc.base.source import Span
+from ltlc.dataclass import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,9 +7,10 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 from functools import cache, cached_property
 from pathlib import Path
+
+from ltlc.dataclass import dataclass
 
 Constant = float | bool | str
 """The value of a constant of a message; whole numbers are floats too, where there is one."""

@@ -7,13 +7,13 @@ of the recording, and so do the rows in them; a reader makes them as large as it
 from __future__ import annotations
 
 from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from itertools import islice
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ltlc.dataclass import dataclass
 from ltlc.inputs.recordings.rows import Column, RecordingError, Row
 from ltlc.runtime.sampling import Value
 from ltlc.semantics.durations import Nanoseconds

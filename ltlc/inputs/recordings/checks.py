@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ltlc.dataclass import dataclass
 from ltlc.inputs.recordings.blocks import MOST_ELEMENTS, Block, Ragged
 from ltlc.inputs.recordings.rows import RecordingError, failure
 from ltlc.runtime.sampling import Value

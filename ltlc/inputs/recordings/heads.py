@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
+from ltlc.dataclass import dataclass
 from ltlc.inputs.recordings.rows import RecordingError, failure
 from ltlc.specification.expressions import Each, Field, PathStep, Signal
 

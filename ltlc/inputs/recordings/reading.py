@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from enum import Enum
 
+from ltlc.dataclass import dataclass
 from ltlc.runtime.times import Times, nanoseconds
 from ltlc.semantics.durations import Nanoseconds
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import json
 import math
-from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
 from ltlc.base.codes import diagnostic
 from ltlc.base.diagnostics import Diagnostic
 from ltlc.base.source import Source
+from ltlc.dataclass import dataclass
 from ltlc.runtime.sampling import Value
 from ltlc.runtime.times import SECOND, nanoseconds, seconds_text, span_text
 from ltlc.semantics.durations import Nanoseconds

@@ -6,7 +6,6 @@ An array is a column, or one for each element: `scan[0]`, `scan[1]`, …; an ele
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property, reduce
 from pathlib import Path
 from typing import Protocol
@@ -17,6 +16,7 @@ from ltlc.base.codes import diagnostic
 from ltlc.base.diagnostics import Diagnostic
 from ltlc.base.nearest import did_you_mean, nearest_first
 from ltlc.base.source import Source
+from ltlc.dataclass import dataclass
 from ltlc.inputs.recordings.blocks import Block, Places, Ragged, Samples, kind_of
 from ltlc.inputs.recordings.fence import fenced
 from ltlc.inputs.recordings.heads import Spelling, array_and_index, spellings

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 
+from ltlc.dataclass import dataclass
 from ltlc.runtime.episodes import Episodes
 from ltlc.runtime.properties import Change, Moment, Opening
 from ltlc.runtime.tracking import Track

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from os import PathLike
 from pathlib import Path
@@ -14,6 +13,7 @@ from ltlc.base.errors import UnusableInput
 from ltlc.base.files import write_all
 from ltlc.base.limits import Budget
 from ltlc.base.nearest import did_you_mean
+from ltlc.dataclass import dataclass
 from ltlc.interfaces.api.prepare import Text, encoding_of, folders, prepare, read
 from ltlc.interfaces.building.build import Built, TooLargeError
 from ltlc.interfaces.building.build import build as build_judged

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import fields
 from os import PathLike
 from typing import Any
 
@@ -15,6 +15,7 @@ from ltlc.base.provenance import provenance
 from ltlc.base.render import full
 from ltlc.base.render import json as render_json
 from ltlc.base.source import Source, Span
+from ltlc.dataclass import dataclass
 from ltlc.interfaces.api.prepare import Text, encoding_of, folders, read
 from ltlc.specification.requirements import Requirement
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any, Literal
@@ -21,6 +20,7 @@ from ltlc.base.errors import UnusableInput
 from ltlc.base.limits import Budget, Exceeded, Watch
 from ltlc.base.provenance import provenance
 from ltlc.base.source import Source
+from ltlc.dataclass import dataclass
 from ltlc.frontend.language import load_text, read_source
 from ltlc.frontend.language.each import refusals
 from ltlc.frontend.language.suppression import unsuppressed

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -18,6 +17,7 @@ from ltlc.base.diagnostics import Diagnostic
 from ltlc.base.errors import UnusableInput
 from ltlc.base.limits import Budget, Exceeded
 from ltlc.base.nearest import did_you_mean
+from ltlc.dataclass import dataclass
 from ltlc.frontend.language import read_source
 from ltlc.interfaces.api.tables import Display
 from ltlc.semantics.ltl import Formula

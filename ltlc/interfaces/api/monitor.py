@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from operator import index
 from os import PathLike
 from pathlib import Path
@@ -11,6 +10,7 @@ from typing import SupportsIndex
 
 from ltlc.base.errors import UnusableInput
 from ltlc.base.limits import Budget
+from ltlc.dataclass import dataclass
 from ltlc.inputs.recordings.checks import checks_of
 from ltlc.inputs.recordings.given import DOUBLE, TIME, GivenTable, cells, time_given
 from ltlc.inputs.recordings.rows import RecordingError

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from os import PathLike
 from pathlib import Path
@@ -16,6 +15,7 @@ from ltlc.base.errors import UnusableInput
 from ltlc.base.limits import Budget, Watch
 from ltlc.base.nearest import did_you_mean
 from ltlc.base.source import Source
+from ltlc.dataclass import dataclass
 from ltlc.frontend.language import load_text, read_source
 from ltlc.frontend.language.suppression import suppress, unsuppressed
 from ltlc.semantics.encodings import ENCODINGS, Encoding

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 from ltlc.base.diagnostics import Diagnostic
 from ltlc.base.errors import UnusableInput
+from ltlc.dataclass import dataclass
 from ltlc.monitoring.judging.run import RunReport
 from ltlc.runtime import reports
 from ltlc.runtime.properties import Failure, Moment

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
 from ltlc.assurance.evidence.certified import entry_of
 from ltlc.assurance.gate import Judgement, judge_all
@@ -12,6 +11,7 @@ from ltlc.assurance.pairs import followed
 from ltlc.base.diagnostics import Diagnostic
 from ltlc.base.limits import Budget, Exceeded, Watch
 from ltlc.compiler import Compiled
+from ltlc.dataclass import dataclass
 from ltlc.frontend.language import types_for
 from ltlc.interfaces.building.targets import Made, Target
 from ltlc.interfaces.building.wording import GATE_MEMORY, GATE_SECONDS, failures, summary

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property, partial
 from pathlib import Path
 from typing import Protocol
@@ -22,6 +21,7 @@ from ltlc.base.codes import diagnostic
 from ltlc.base.diagnostics import Diagnostic
 from ltlc.base.files import refuse_unwritable
 from ltlc.compiler import Compiled
+from ltlc.dataclass import dataclass
 from ltlc.specification.specification import Specification
 
 _NODE = "ROS 2"

@@ -6,12 +6,12 @@ import math
 import os
 import threading
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING, TypeVar
 
 from ltlc.base.diagnostics import Diagnostic
 from ltlc.base.limits import UNBOUNDED, Budget, Exceeded, run_all
+from ltlc.dataclass import dataclass
 from ltlc.semantics.encodings import Encoding
 from ltlc.specification.specification import Specification
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 
 from lsprotocol import types  # noqa: TID251
@@ -11,6 +10,7 @@ from lsprotocol import types  # noqa: TID251
 from ltlc.base.diagnostics import Diagnostic, Fix, Severity
 from ltlc.base.render.table import example_lines
 from ltlc.base.source import Span
+from ltlc.dataclass import dataclass
 from ltlc.interfaces.editor.completion import Completions
 from ltlc.interfaces.editor.document import Document
 from ltlc.interfaces.editor.keywords import meaning

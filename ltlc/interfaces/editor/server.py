@@ -13,7 +13,7 @@ import signal
 import tempfile
 import threading
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
@@ -31,6 +31,7 @@ from ltlc.base.diagnostics import Diagnostic
 from ltlc.base.files import write_text
 from ltlc.base.limits import Exceeded
 from ltlc.base.source import Source, Span
+from ltlc.dataclass import dataclass
 from ltlc.frontend.language import in_order, types_for
 from ltlc.frontend.language.suppression import unsuppressed
 from ltlc.frontend.layout import layout

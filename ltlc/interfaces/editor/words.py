@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Collection, Iterator, Mapping
-from dataclasses import dataclass
 from enum import Enum
 
 from ltlc.base.source import Span
+from ltlc.dataclass import dataclass
 from ltlc.frontend.language import forall
 from ltlc.frontend.language.primitives import PRIMITIVES
 from ltlc.frontend.syntax import tree as syntax

@@ -6,12 +6,13 @@ import base64
 import math
 import zlib
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ltlc.dataclass import dataclass
 from ltlc.inputs.recordings.trails import Trail
 from ltlc.interfaces.pages.panels import Drawing, Panel
 from ltlc.interfaces.pages.series import Series

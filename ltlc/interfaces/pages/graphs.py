@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from html import escape
 
+from ltlc.dataclass import dataclass
 from ltlc.semantics.verdicts import Verdict
 
 ROW, RADIUS, MARGIN, GAP = 170, 24, 70, 170

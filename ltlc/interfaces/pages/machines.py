@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from ltlc.backends.guards import Cube, TooManyCubesError, cubes
 from ltlc.compiler import Compiled
+from ltlc.dataclass import dataclass
 from ltlc.inputs.recordings.trails import Trail
 from ltlc.interfaces.pages.graphs import Edge, graph_svg
 from ltlc.program.properties import Words, words

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from html import escape
 from itertools import pairwise
 
 import numpy as np
 
+from ltlc.dataclass import dataclass
 from ltlc.interfaces.pages.series import Numbers, Series, Times
 from ltlc.runtime.functions import inside_of
 from ltlc.runtime.reports import printable

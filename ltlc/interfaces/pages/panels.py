@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 from enum import Enum
 
 from ltlc.base.source import Source
+from ltlc.dataclass import dataclass
 from ltlc.runtime.times import seconds
 from ltlc.semantics.properties import predicates
 from ltlc.semantics.timed_atoms import Age, atoms_within

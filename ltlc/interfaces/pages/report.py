@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import PurePath
 from typing import Any
@@ -15,6 +14,7 @@ from ltlc.backends.templates import template
 from ltlc.base.diagnostics import Diagnostic
 from ltlc.base.render.table import example_lines
 from ltlc.compiler import Compiled
+from ltlc.dataclass import dataclass
 from ltlc.inputs.recordings.trails import Trail
 from ltlc.interfaces.pages.data import Data, timeline
 from ltlc.interfaces.pages.machines import machine_picture

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 from ltlc.base.errors import UnusableInput
 from ltlc.base.limits import Budget
 from ltlc.base.render.json import documents
+from ltlc.dataclass import dataclass
 from ltlc.inputs.recordings.given import GivenTable
 from ltlc.inputs.recordings.reading import ReadOptions
 from ltlc.inputs.recordings.signals import FromTable

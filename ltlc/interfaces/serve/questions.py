@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from http import HTTPStatus
 from typing import Any, TypeVar
@@ -12,6 +11,7 @@ from typing import Any, TypeVar
 from ltlc.base.diagnostics import Diagnostic
 from ltlc.base.errors import UnusableInput
 from ltlc.base.source import Source
+from ltlc.dataclass import dataclass
 from ltlc.frontend.language import load_text
 from ltlc.interfaces.api.prepare import NAME, encoding_of
 from ltlc.semantics.encodings import Encoding

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from importlib.resources import files
 from typing import Any
 
 from ltlc import __version__
+from ltlc.dataclass import dataclass
 from ltlc.frontend.syntax.lexer import CONTEXTUAL, FUNCTIONS, KEYWORDS, QUANTIFIERS
 from ltlc.semantics.durations import UNITS
 from ltlc.semantics.encodings import ENCODINGS

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from time import perf_counter
@@ -11,6 +11,7 @@ from typing import Protocol
 
 from ltlc.base.diagnostics import Diagnostic
 from ltlc.base.limits import UNBOUNDED, Exceeded, run_each
+from ltlc.dataclass import dataclass
 from ltlc.inputs.recordings.ahead import one_thread
 from ltlc.monitoring.campaigns.outcomes import Outcome, lost, not_judged, of_report
 from ltlc.monitoring.campaigns.places import Location

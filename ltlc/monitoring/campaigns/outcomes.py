@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 from ltlc.assurance.evidence.document import printed
 from ltlc.base.codes import diagnostic
 from ltlc.base.diagnostics import Diagnostic
 from ltlc.base.source import Source
+from ltlc.dataclass import dataclass
 from ltlc.monitoring.campaigns.places import Location
 from ltlc.monitoring.judging.run import RunReport
 from ltlc.runtime import reports

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from enum import Enum
 
+from ltlc.dataclass import dataclass
 from ltlc.monitoring.campaigns.outcomes import Outcome, PropertyOutcome
 from ltlc.runtime import reports
 from ltlc.semantics.durations import Nanoseconds

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 
+from ltlc.dataclass import dataclass
 from ltlc.inputs.recordings.blocks import Places
 from ltlc.monitoring.columns.elements import Elements
 from ltlc.runtime.properties import Change

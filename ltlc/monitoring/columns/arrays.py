@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 
+from ltlc.dataclass import dataclass
 from ltlc.inputs.recordings.blocks import Array, Places, Ragged, spans
 from ltlc.monitoring.columns.bits import Mask
 from ltlc.runtime.sampling import Value

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from itertools import accumulate
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ltlc.dataclass import dataclass
 from ltlc.inputs.recordings.blocks import Places
 
 Bytes = NDArray[np.uint8]

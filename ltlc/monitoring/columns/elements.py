@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
 
+from ltlc.dataclass import dataclass
 from ltlc.inputs.recordings.blocks import Places
 from ltlc.monitoring.columns.bits import Bytes, Mask
 from ltlc.monitoring.columns.ids import Runs, runs_of

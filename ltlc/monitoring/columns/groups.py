@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ltlc.dataclass import dataclass
 from ltlc.inputs.recordings.blocks import Places
 from ltlc.monitoring.columns.bits import Bytes, Mask, lengths
 from ltlc.monitoring.columns.tables import Happens, Sets, States, Tables

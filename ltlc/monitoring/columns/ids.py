@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from itertools import islice
 
 import numpy as np
 
+from ltlc.dataclass import dataclass
 from ltlc.inputs.recordings.blocks import Array, Places
 from ltlc.monitoring.columns.bits import Bytes
 from ltlc.runtime.slice_keys import Id, id_of

@@ -6,13 +6,14 @@ Of a property with clocks, the table has the results of steps as long as no cloc
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ltlc.dataclass import dataclass
 from ltlc.monitoring.columns.bits import Mask
 from ltlc.monitoring.columns.values import predicate
 from ltlc.program.machine import Base, Outcome, State

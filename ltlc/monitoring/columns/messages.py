@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
+from ltlc.dataclass import dataclass
 from ltlc.inputs.recordings.blocks import Array, Block, Places, Ragged, Samples
 from ltlc.monitoring.columns.atoms import bits_of, prepare
 from ltlc.monitoring.columns.bits import Bytes, Mask, union, unpack

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
+from ltlc.dataclass import dataclass
 from ltlc.inputs.recordings.blocks import Block, Places
 from ltlc.monitoring.columns.bits import Bytes
 from ltlc.monitoring.columns.messages import letters_of, rows_with

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from itertools import count
 from typing import NamedTuple
 
@@ -13,6 +12,7 @@ from ltlc.backends.python.plan import ScopePart, scopes
 from ltlc.backends.steps import clock_names
 from ltlc.base.source import Source
 from ltlc.compiler import Compiled
+from ltlc.dataclass import dataclass
 from ltlc.monitoring.columns.atoms import Compared, LoweredAtom, comparisons, lowered_atoms
 from ltlc.monitoring.columns.machine import MOST_DURATION, Control, Slot, machine
 from ltlc.monitoring.columns.tables import Tables

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import cached_property, reduce
 from typing import Any, cast
 
 import numpy as np
 
+from ltlc.dataclass import dataclass
 from ltlc.inputs.recordings.blocks import Array, Block, Places, Ragged
 from ltlc.monitoring.columns.arrays import ByStep, Views, held_once, views_after, views_of
 from ltlc.monitoring.columns.bits import Mask, union

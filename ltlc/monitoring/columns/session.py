@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from time import perf_counter_ns
 
 import numpy as np
 
+from ltlc.dataclass import dataclass
 from ltlc.inputs.recordings.blocks import Block, Ragged
 from ltlc.monitoring.columns.atoms import Compared, prepare
 from ltlc.monitoring.columns.bits import unpack

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 
 import numpy as np
 
+from ltlc.dataclass import dataclass
 from ltlc.inputs.recordings.blocks import Places
 from ltlc.monitoring.columns.alone import Place
 from ltlc.monitoring.columns.bits import Mask

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from functools import partial
 from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ltlc.dataclass import dataclass
 from ltlc.inputs.recordings.blocks import Array, Places
 from ltlc.monitoring.columns.bits import Bits, Bytes, as_bits, is_few, packed_bytes
 

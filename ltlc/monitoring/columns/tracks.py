@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
+from ltlc.dataclass import dataclass
 from ltlc.inputs.recordings.blocks import Places
 from ltlc.monitoring.columns.atoms import bits_of
 from ltlc.monitoring.columns.bits import Bits, batches, pack, unpack

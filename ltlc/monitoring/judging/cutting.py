@@ -5,12 +5,13 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from errno import EINVAL
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ltlc.base.files import written
+from ltlc.dataclass import dataclass
 from ltlc.inputs.recordings.digests import files_of
 from ltlc.inputs.recordings.rows import RecordingError
 from ltlc.monitoring.judging.extracts import Extract, extracts

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path, PurePath
 from threading import Thread
 from typing import NamedTuple
@@ -26,6 +26,7 @@ from ltlc.base.provenance import FileDigest, digest_of
 from ltlc.base.revision import version_text
 from ltlc.base.source import Source
 from ltlc.compiler import Compiled
+from ltlc.dataclass import dataclass
 from ltlc.inputs.recordings import Recording
 from ltlc.inputs.recordings.bags import BagRecording
 from ltlc.inputs.recordings.bags.plan import absolute

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 
+from ltlc.dataclass import dataclass
 from ltlc.monitoring.later import MOST, Violation, all_violations, violation_at
 from ltlc.runtime.reports import topic_names
 from ltlc.runtime.session import Session

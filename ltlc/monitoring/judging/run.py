@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 from pathlib import Path
 from time import perf_counter_ns
@@ -16,6 +16,7 @@ from ltlc.base.diagnostics import Diagnostic, Severity
 from ltlc.base.provenance import FileDigest, pairs, provenance
 from ltlc.base.source import Source
 from ltlc.compiler import Compiled
+from ltlc.dataclass import dataclass
 from ltlc.inputs.recordings import Block, Recording, RecordingError, open_recording
 from ltlc.inputs.recordings.checks import checks_of
 from ltlc.inputs.recordings.digests import digests

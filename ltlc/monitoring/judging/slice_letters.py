@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 
 from ltlc.assurance.evidence.document import StatedSlice
+from ltlc.dataclass import dataclass
 from ltlc.monitoring.letters import Letters
 from ltlc.runtime.properties import Change
 from ltlc.runtime.sampling import Value

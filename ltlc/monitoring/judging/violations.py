@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
+from ltlc.dataclass import dataclass
 from ltlc.monitoring.later import MOST, Violation, all_violations
 from ltlc.runtime.documents import moment_report
 from ltlc.runtime.reports import counted, moment_text

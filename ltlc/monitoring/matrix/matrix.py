@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from enum import Enum
 from pathlib import PurePath
 from typing import Any
 
 from ltlc.base.source import Source
+from ltlc.dataclass import dataclass
 from ltlc.monitoring.campaigns.outcomes import Outcome, PropertyOutcome
 from ltlc.monitoring.campaigns.tally import Result, kind_of
 from ltlc.specification.requirements import Requirement

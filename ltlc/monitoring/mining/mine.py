@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from enum import Enum
 from math import isfinite, isnan
 from pathlib import Path
@@ -11,6 +11,7 @@ from pathlib import Path
 from ltlc.automata import Budget
 from ltlc.base.diagnostics import Diagnostic, Severity
 from ltlc.base.limits import Watch
+from ltlc.dataclass import dataclass
 from ltlc.frontend.language.parameters import Role
 from ltlc.inputs.recordings.reading import DEFAULT, ReadOptions
 from ltlc.monitoring.mining.oracle import Answer, Kept, Oracle, Outcome

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from enum import Enum
 from pathlib import Path
 
@@ -11,6 +10,7 @@ from ltlc.assurance.exactness import late_verdicts
 from ltlc.automata import Budget, Exceeded
 from ltlc.base.diagnostics import Diagnostic
 from ltlc.compiler import Compiled, compile_specification
+from ltlc.dataclass import dataclass
 from ltlc.inputs.recordings import Block, Recording, RecordingError, open_recording
 from ltlc.inputs.recordings.blocks import Ragged
 from ltlc.inputs.recordings.reading import DEFAULT, ReadOptions

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass
+
+from ltlc.dataclass import dataclass
 
 WAYS = 4
 """Into so many parts one look at a recording divides what is left: the more, the fewer looks, each a little longer."""

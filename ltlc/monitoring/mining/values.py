@@ -8,10 +8,10 @@ either side, so that a threshold which nothing is compared with is not taken for
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from decimal import Decimal
 from math import inf
 
+from ltlc.dataclass import dataclass
 from ltlc.frontend.language.durations import LONGEST
 from ltlc.frontend.language.parameters import Role
 from ltlc.monitoring.mining.monotone import STRONGER, WEAKER

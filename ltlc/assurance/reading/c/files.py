@@ -7,7 +7,7 @@ first, in `hold`.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence, Set
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 
 from pycparser import c_ast
@@ -44,6 +44,7 @@ from ltlc.assurance.reading.trees import (
     Tree,
     Variable,
 )
+from ltlc.dataclass import dataclass
 from ltlc.program.expressions import Expression
 from ltlc.program.lowering import double, has_sample, lowered, read
 from ltlc.program.machine import Clock

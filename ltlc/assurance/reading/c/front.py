@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from pycparser import c_ast
 from pycparser.c_ast import Node
@@ -26,6 +26,7 @@ from ltlc.assurance.reading.trees import (
     Tree,
     Variable,
 )
+from ltlc.dataclass import dataclass
 from ltlc.program import functions as f
 from ltlc.program.expressions import Apply as Applied
 from ltlc.program.expressions import Count, Expression, Literal

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 
 from ltlc.assurance.reading.c.members import Given, Struct
 from ltlc.assurance.reading.c.tables import in_all
+from ltlc.dataclass import dataclass
 from ltlc.program.as_new import states_as_new
 from ltlc.program.types import type_of
 from ltlc.specification.specification import Slicing, topics

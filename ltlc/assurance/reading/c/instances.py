@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 from ltlc.assurance.reading.c.members import Given, Struct, declared
 from ltlc.assurance.reading.c.tables import in_all
+from ltlc.dataclass import dataclass
 from ltlc.program.types import TEXT
 from ltlc.specification.specification import Instances, topics_of
 

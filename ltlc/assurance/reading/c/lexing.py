@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
+
+from ltlc.dataclass import dataclass
 
 _LEXEME = re.compile(
     r"""

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import NamedTuple, Protocol
 
 from pycparser import c_ast
@@ -17,6 +17,7 @@ from ltlc.assurance.reading.c.front import plural
 from ltlc.assurance.reading.c.front import type_of as type_text
 from ltlc.assurance.reading.names import recalls
 from ltlc.assurance.reading.trees import NotUnderstoodError
+from ltlc.dataclass import dataclass
 from ltlc.program.lowering import read, undefined_parts
 from ltlc.program.machine import Age, Machine, Occurrences
 from ltlc.program.types import BOOL, DOUBLE, Type, recent_of, type_of

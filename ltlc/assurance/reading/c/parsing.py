@@ -6,7 +6,6 @@ What is said to the preprocessor is put aside, line by line, with all that stand
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -16,6 +15,7 @@ from pycparser.c_parser import CParser, ParseError
 
 from ltlc.assurance.reading.c.lexing import Token, tokens
 from ltlc.assurance.reading.trees import NotUnderstoodError
+from ltlc.dataclass import dataclass
 
 STANDARD = ("bool", "size_t", *(f"{sign}int{bits}_t" for sign in ("", "u") for bits in (8, 16, 32, 64)))
 """Types of the C library that are used."""

@@ -10,12 +10,12 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ltlc.dataclass import dataclass
 from ltlc.inputs.messages.definitions import STRINGS, FieldType, MessageTypes
 from ltlc.inputs.recordings.bags.choices import Choice, Path, Tree, in_order, tree
 from ltlc.inputs.recordings.bags.messages import Messages, gathered

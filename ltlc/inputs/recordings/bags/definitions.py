@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 
 from ltlc.base.nearest import did_you_mean
+from ltlc.dataclass import dataclass
 from ltlc.inputs.messages.definitions import JAZZY, STRINGS, FieldType, Message, MessageTypes, shipped
 from ltlc.inputs.messages.texts import defined
 from ltlc.inputs.recordings.bags.messages import LARGEST, Topic

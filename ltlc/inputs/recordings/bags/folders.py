@@ -6,7 +6,6 @@ import os
 import re
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass
 from errno import ENOSPC
 from pathlib import Path, PurePosixPath
 from shutil import disk_usage
@@ -16,6 +15,7 @@ from typing import Any
 from ltlc.base.codes import diagnostic
 from ltlc.base.diagnostics import Diagnostic
 from ltlc.base.source import Source
+from ltlc.dataclass import dataclass
 from ltlc.inputs.recordings.bags.messages import Storage
 from ltlc.inputs.recordings.rows import RecordingError, failure
 

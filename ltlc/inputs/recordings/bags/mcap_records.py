@@ -5,12 +5,13 @@ from __future__ import annotations
 import os
 import struct
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 from io import SEEK_CUR, SEEK_END, BufferedReader, BytesIO
 from typing import NamedTuple
 
 import numpy as np
 
+from ltlc.dataclass import dataclass
 from ltlc.inputs.recordings.bags.messages import LARGEST
 from ltlc.inputs.recordings.blocks import Array
 from ltlc.runtime.mcap import CHANNEL, CHUNK, CHUNK_HEAD, DATA_END, HEAD, MAGIC, MESSAGE, SCHEMA, ChunkIndex

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 from sys import getsizeof
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ltlc.dataclass import dataclass
 from ltlc.inputs.recordings.blocks import Array, Block, Places, Ragged, Samples, joined
 from ltlc.inputs.recordings.rows import LONGEST_GAP
 from ltlc.runtime.times import SECOND

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ltlc.base.diagnostics import Diagnostic
+from ltlc.dataclass import dataclass
 from ltlc.inputs.recordings.blocks import Array, Places
 from ltlc.runtime.times import NEVER
 from ltlc.semantics.durations import Nanoseconds

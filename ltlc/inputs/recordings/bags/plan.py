@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import cached_property
 
 import numpy as np
 
 from ltlc.base.nearest import did_you_mean, nearest_first
+from ltlc.dataclass import dataclass
 from ltlc.inputs.messages.definitions import JAZZY, FieldType, MessageTypes
 from ltlc.inputs.messages.texts import full_name
 from ltlc.inputs.recordings.bags import cdr

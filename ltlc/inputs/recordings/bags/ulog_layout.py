@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
+from ltlc.dataclass import dataclass
 from ltlc.inputs.recordings.bags.cdr import HEADER
 from ltlc.inputs.recordings.bags.scalars import SCALARS
 from ltlc.inputs.recordings.bags.ulog_records import DamageError, Part
