@@ -47,7 +47,7 @@ def watch(names: dict[str, Any], tmp_path: Path) -> Iterator[Callable[..., Any]]
         node = rclpy.create_node("watch", automatically_declare_parameters_from_overrides=True)
         plan = names["plan"]()
         options = names["read_options"](node, plan)
-        watch = names["Watch"](node, plan, names["topics_to_read"](), options, names["Pulse"]())
+        watch = names["Watch"](node, plan, names["topics_to_read"](), options, names["PROVENANCE"], names["Pulse"]())
         listeners = {each.topic_name: each.callback for each in node.subscriptions if each.topic_name in ("/a", "/b")}
         assert set(listeners) == {"/a", "/b"}
         return node, watch, listeners

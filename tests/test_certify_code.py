@@ -21,6 +21,7 @@ from ltlc.assurance.afresh.files import code_at, compared
 from ltlc.assurance.afresh.outcomes import Equal, Unequal
 from ltlc.assurance.reading.c.parsing import parsed
 from ltlc.backends import emit
+from ltlc.base.revision import commit_text
 
 PROPERTIES = """\
 decl d /d Float32.data
@@ -118,6 +119,9 @@ CHANGES = {
     "the session": ("node.py", "signals.SIGINT, signals.SIGTERM", "signals.SIGINT,", "node.py:"),
     "another name": ("node.py", '"props_monitor",', '"other_monitor",', "in `monitor`"),
     "another encoding": ("node.py", '"""A ROS', '# coding: utf-7\n"""A ROS', "utf-7"),
+    "another specification": ("node.py", '"sha256": "', '"sha256": "0', "node.py:"),
+    "another specification of a package": ("pkg", '"sha256": "', '"sha256": "0', "properties.py:"),
+    "code in the place of a commit": ("node.py", '"commit": ', '"commit": exit() or ', "node.py:"),
     "a relation": ("code.py", "d < 1.0", "d <= 1.0", "in `Near.step`"),
     "of a package": ("pkg", "d < 1.0", "d <= 1.0", "in `Near.step`"),
     "what starts it": ("pkg", "(signal.SIGINT, signal.SIGTERM)", "(signal.SIGTERM,)", "in `main`"),
@@ -266,6 +270,12 @@ def test_blanks_comments_redundant_parentheses_and_what_a_person_fills_in_make_n
 ) -> None:
     exit_code, shown = certify.changed(name, right, other)
     assert exit_code == 0, shown
+
+
+@pytest.mark.parametrize("name", ["node.py", "pkg"])
+def test_what_another_commit_has_made_is_accepted_if_it_is_the_same(certify: Certify, name: str) -> None:
+    own = f'"commit": "{commit_text()}"' if commit_text() else '"commit": None'
+    assert certify.changed(name, own, '"commit": "0123456789ab"')[0] == 0
 
 
 def test_c_whose_parentheses_make_something_else_is_refused(certify: Certify) -> None:

@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import re
 import signal
+from hashlib import sha256
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
 import pytest
 from ros_support import Network, Node, Send, emitted
+
+from ltlc import __version__
+from ltlc.base.revision import commit_text
 
 pytestmark = pytest.mark.ros
 pytest.importorskip("rclpy", reason="needs ROS 2: install ltlc[ros]")
@@ -67,6 +71,28 @@ def test_a_signal_ends_the_run_with_its_verdicts(script: Path, network: Network,
         assert "unmet since" in node.log
         suite = ElementTree.parse(node.junit).getroot()
         assert (suite.get("tests"), suite.get("failures"), suite.get("errors")) == ("2", "1", "0")
+
+
+def test_all_that_a_node_reports_has_what_it_was_built_by_and_from(
+    script: Path, network: Network, send: Send, tmp_path: Path
+) -> None:
+    with Node(script, tmp_path) as node:
+        send(1.0)
+        network.wait_until(lambda: "watch_monitor: low" in network.statuses, "a diagnosis")
+        assert node.end() == 3
+    digest = sha256(PROPERTIES.encode()).hexdigest()
+    wanted = {"ltlc": __version__, "specification": f"watch.txt sha256:{digest}"}
+    wanted |= {"commit": commit_text()} if commit_text() else {}
+    assert node.lines[-1]["provenance"] == {
+        "ltlc": __version__,
+        "commit": commit_text() or None,
+        "specifications": [{"name": "watch.txt", "sha256": digest}],
+        "recordings": [],
+    }
+    suite = ElementTree.parse(node.junit).getroot()
+    assert {each.get("name"): each.get("value") for each in suite.findall("properties/property")} == wanted
+    told = {pair.key: pair.value for pair in network.statuses["watch_monitor: low"].values}
+    assert wanted.items() <= told.items()
 
 
 def test_the_timeout_ends_the_run(script: Path, send: Send, tmp_path: Path) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable
 from hashlib import sha256
 from pathlib import Path
@@ -13,6 +14,7 @@ import pytest
 from bag_support import odometry, rosbag2
 
 from ltlc import __version__
+from ltlc.backends import FILE_NAMES
 from ltlc.base.revision import commit_text
 from ltlc.cli import main
 from ltlc.interfaces.api.monitor import monitor
@@ -117,6 +119,54 @@ def test_sarif_says_it_in_its_own_terms(folder: Path, capsys: pytest.CaptureFixt
     [run] = json.loads(capsys.readouterr().out)["runs"]
     assert run["artifacts"] == [{"location": {"uri": "props.txt"}, "hashes": {"sha-256": sha256(TEXT).hexdigest()}}]
     assert run["tool"]["driver"].get("properties", {}).get("commit", "") == commit_text()
+
+
+OUTPUTS = {
+    "check json": "check props.txt --format json",
+    "check sarif": "check props.txt --format sarif",
+    "run json": "run props.txt a.csv --format json",
+    "run junit": "run props.txt a.csv --format junit",
+    "run --output": "run props.txt a.csv --output out.mcap",
+    "run --evidence": "run props.txt a.csv --evidence out",
+    "build ros2": "build props.txt --target ros2 -o out.py",
+    "build ament": "build props.txt --target ament -o props_monitor",
+    "build json": "build props.txt --target json -o out",
+    "build hoa": "build props.txt --target hoa -o out",
+    "mine json": "mine props.txt a.csv --format json",
+    "compare json": "compare props.txt --format json",
+    "matrix json": "matrix props.txt --format json",
+    "matrix reqif": "matrix props.txt --format reqif",
+    "matrix needs": "matrix props.txt --format needs",
+}
+"""What other programs read, and how it is written."""
+
+FOR_PEOPLE = {"text", "full", "concise", "html", "md", "csv", "dot", "python", "c", "rust"}
+"""Forms of output for people, and code that has no output of its own."""
+
+
+def test_the_list_of_outputs_is_complete(capsys: pytest.CaptureFixture[str]) -> None:
+    formats = {f"build {target}" for target in FILE_NAMES if target not in FOR_PEOPLE}
+    for command in ("new", "check", "format", "run", "mine", "matrix", "certify", "compare", "explain", "serve"):
+        with pytest.raises(SystemExit):
+            main([command, "--help"])
+        found = re.search(r"--format \{([a-z,]+)\}", capsys.readouterr().out)
+        of_command = set(found[1].split(",")) if found else set()
+        formats |= {f"{command} {each}" for each in of_command - FOR_PEOPLE}
+    assert formats == {name for name in OUTPUTS if "--" not in name}
+
+
+@pytest.mark.parametrize("name", OUTPUTS)
+def test_every_output_for_programs_has_version_commit_and_specification(
+    folder: Path, capsys: pytest.CaptureFixture[str], name: str
+) -> None:
+    before = {*folder.rglob("*")}
+    if "mine" in name:
+        (folder / "props.txt").write_bytes(TEXT.replace(b"> 2", b"> ?"))
+    main(OUTPUTS[name].split())
+    written = [path.read_bytes() for path in {*folder.rglob("*")} - before if path.is_file()]
+    found = b"".join([*written, capsys.readouterr().out.encode()])
+    digest = sha256((folder / "props.txt").read_bytes()).hexdigest()
+    assert all(part.encode() in found for part in (__version__, commit_text(), digest))
 
 
 def test_of_a_bag_all_files_are_named(folder: Path, document: Document) -> None:

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from ltlc.backends.guards import Cube, TooManyCubesError, cubes
+from ltlc.base.revision import version_text
 from ltlc.compiler import Compiled
 from ltlc.semantics.monitor import Monitor, Target
 from ltlc.semantics.verdicts import Verdict
@@ -24,8 +25,9 @@ def _automaton(compiled: Compiled, specification: Specification) -> Iterator[str
     monitor, property_ = compiled.monitor, compiled.specification
     yield "HOA: v1"
     yield f"name: {_quoted(f'{property_.label}: {property_.text}')}"
-    yield f"tool: {_quoted('ltlc')}"
+    yield f"tool: {_quoted('ltlc')} {_quoted(version_text())}"
     yield f"ltlc-source: {_quoted(f'{specification.source.name}:{property_.line}')}"
+    yield f"ltlc-sha256: {_quoted(specification.source.sha256)}"
     yield f"ltlc-encoding: {_quoted(compiled.encoding.name)}"
     yield f"States: {len(monitor.verdicts)}"
     yield "Start: 0"

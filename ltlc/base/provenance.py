@@ -5,7 +5,7 @@ Everything in it follows from the inputs: it has no date, and no paths but those
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable
 from dataclasses import asdict
 from functools import cache
 from hashlib import file_digest
@@ -42,16 +42,6 @@ def provenance(specifications: Iterable[Source], recordings: Iterable[FileDigest
         "specifications": [{"name": each.name, "sha256": each.sha256} for each in specifications],
         "recordings": [asdict(each) for each in recordings],
     }
-
-
-def pairs(made_of: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
-    """The object `provenance` as names and values, for forms that have nothing deeper; of an empty one nothing."""
-    if made_of:
-        yield "ltlc", made_of["ltlc"]
-        if made_of["commit"]:
-            yield "commit", made_of["commit"]
-        for kind in ("specification", "recording"):
-            yield from ((kind, f"{each['name']} sha256:{each['sha256']}") for each in made_of[f"{kind}s"])
 
 
 @cache

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from html import escape
 from typing import Any
@@ -37,6 +37,18 @@ def junit(
 
 Pair = tuple[str, str]
 """The name of a property of a suite or a case, and its value."""
+
+
+def provenance_pairs(made_of: Mapping[str, Any]) -> Iterator[Pair]:
+    """What a report was made of, `provenance` in JSON, as names and values."""
+    if made_of:
+        yield "ltlc", made_of["ltlc"]
+        if made_of["commit"]:
+            yield "commit", made_of["commit"]
+        for kind in ("specification", "recording"):
+            for each in made_of[f"{kind}s"]:
+                yield kind, f"{each['name']} sha256:{each['sha256']}"
+
 
 XML_HEAD = '<?xml version="1.0" encoding="UTF-8"?>\n'
 

@@ -15,7 +15,6 @@ from ltlc.assurance.reading.c.parsing import parsed
 from ltlc.backends import ament, c, emit
 from ltlc.backends.ament.metadata import Metadata, metadata_of
 from ltlc.backends.trees import prose
-from ltlc.base.source import Source
 from ltlc.compiler import Compiled
 from ltlc.dataclass import dataclass
 from ltlc.specification.specification import Specification
@@ -28,6 +27,10 @@ OF_C = (".h", ".c", ".hpp")
 _MADE_BY = re.compile(r"made by ltlc (\d[\w.+!-]*?)\.?[ *]", re.I | re.A)
 _NODE_OF = re.compile(r'\A"""A ROS 2 node that monitors the properties of (.+), made by ltlc ')
 _PACKAGE_OF = re.compile(r"<description>Monitors for the properties of (.+?)</description>")
+
+
+_COMMIT = re.compile(r'^    "commit": (None|"[0-9a-f]{7,40}(, modified)?"),$', re.M)
+"""Of a node, in what it was made of."""
 
 
 class UnusableError(Exception):
@@ -95,8 +98,14 @@ def text_at(path: Path, what: str) -> str:
 def emitted(code: Code, compiled: Sequence[Compiled], specification: Specification) -> Mapping[str, str]:
     """The texts that ltlc emits for the target of `code`, by name, under the name that `code` gives the specification.
 
-    Raises NotInTargetError; UnusableError if the package says nothing of itself.
+    They are by the commit that `code` says. Raises NotInTargetError; UnusableError if the package says nothing of
+    itself.
     """
+    texts = _emitted(code, compiled, specification)
+    return {name: _of_commit(text, code.texts.get(name, "")) for name, text in texts.items()}
+
+
+def _emitted(code: Code, compiled: Sequence[Compiled], specification: Specification) -> Mapping[str, str]:
     specification = _called(specification, code)
     match code.target:
         case "c":
@@ -116,6 +125,14 @@ def emitted(code: Code, compiled: Sequence[Compiled], specification: Specificati
     return {name: emit(code.target, compiled, specification)}
 
 
+def _of_commit(emitted: str, found: str) -> str:
+    """What is `emitted`, made by the commit that made what is `found`."""
+    own, other = _COMMIT.search(emitted), _COMMIT.search(found)
+    if own is None or other is None:
+        return emitted
+    return f"{emitted[: own.start()]}{other[0]}{emitted[own.end() :]}"
+
+
 def _metadata(code: Code) -> Metadata:
     try:
         return metadata_of(code.texts["package.xml"])
@@ -133,9 +150,9 @@ def _called(specification: Specification, code: Code) -> Specification:
     if found is None:
         return specification
     name = unescape(found[1]) if code.target == "ament" else found[1]
-    return (
-        specification if name == prose(own) else replace(specification, source=Source(name, specification.source.text))
-    )
+    if name == prose(own):
+        return specification
+    return replace(specification, source=replace(specification.source, name=name))
 
 
 def compared(code: Code, right: Mapping[str, str]) -> Iterator[tuple[str, Equal | Unequal]]:

@@ -22,7 +22,7 @@ from ltlc.compiler import Compiled
 from ltlc.runtime import MODULES
 from ltlc.specification.specification import Specification
 
-OWN_NAMES = frozenset({"INFINITY", "topics_to_read"})
+OWN_NAMES = frozenset({"INFINITY", "PROVENANCE", "topics_to_read"})
 """Names of the module of the properties; those made from a specification must not hide them."""
 
 ROS_PACKAGES = ("diagnostic_msgs", "rcl_interfaces", "rclpy", "std_msgs")
@@ -48,7 +48,7 @@ def emit(
     messages = sorted({topic.message.split("/")[0] for topic in topics})
     told = context(compiled, specification, OWN_NAMES)
     has_numbers = "INFINITY" in told["plan"]
-    code = "\n".join([told["plan"], *told["readers"], told["topics_to_read"], "math" * has_numbers])
+    code = "\n".join([told["plan"], *told["readers"], told["topics_to_read"], "Any", "math" * has_numbers])
     about = told | {
         "package": package,
         "node": node_name(stem),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import PurePath
 from typing import Any
 
@@ -17,11 +18,12 @@ from ltlc.backends.ros2.inline import Import, inline
 from ltlc.backends.ros2.readers import read_topics, topics_code
 from ltlc.backends.templates import template
 from ltlc.backends.trees import prose
+from ltlc.base.provenance import provenance
 from ltlc.compiler import Compiled
 from ltlc.runtime import MODULES
 from ltlc.specification.specification import MOST_IDS, Specification
 
-OWN_NAMES = frozenset({"INFINITY", "main", "monitor", "import_ros", "topics_to_read"})
+OWN_NAMES = frozenset({"INFINITY", "PROVENANCE", "main", "monitor", "import_ros", "topics_to_read"})
 """Names of the template; those made from a specification must not hide them."""
 
 
@@ -41,15 +43,34 @@ def emit(compiled: Sequence[Compiled], specification: Specification) -> str:
 def context(compiled: Sequence[Compiled], specification: Specification, taken: frozenset[str]) -> dict[str, Any]:
     """The parts of a node about its properties: monitors, and readers of messages, with no name in `taken`."""
     readers, topics = topics_code(read_topics(compiled), taken)
+    source = replace(specification.source, name=PurePath(specification.source.name).name)
     return {
-        "source": prose(PurePath(specification.source.name).name),
+        "source": prose(source.name),
         "version": __version__,
         "overview": [line for c in compiled for line in overview(c)],
         "usage": template(__name__, "usage.txt.jinja").render(),
         "plan": plan_code(compiled, specification, taken=taken, most_ids=MOST_IDS).rstrip("\n"),
         "readers": readers,
         "topics_to_read": "\n".join(topics),
+        "provenance": _literal(provenance([source])),
     }
+
+
+def _literal(value: Any, indent: str = "") -> str:
+    """A value of JSON as a literal of Python, an item a line."""
+    inner = f"{indent}    "
+    match value:
+        case dict():
+            items = [f"{literal(key)}: {_literal(each, inner)}" for key, each in value.items()]
+            brackets = "{}"
+        case list():
+            items, brackets = [_literal(each, inner) for each in value], "[]"
+        case str():
+            return literal(value)
+        case _:
+            return repr(value)
+    lines = "".join(f"{inner}{item},\n" for item in items)
+    return f"{brackets[0]}\n{lines}{indent}{brackets[1]}" if lines else brackets
 
 
 def node_name(stem: str) -> str:

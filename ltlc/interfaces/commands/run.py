@@ -132,7 +132,7 @@ def _run(options: argparse.Namespace) -> int:
         options.verdicts,
         keep_trails,
         remarks=prepared.late,
-        hashed=options.format != "text" or options.results is not None,
+        hashed=options.format != "text" or bool(options.results or options.output),
         evidence=evidence,
         cutting=cut,
     )

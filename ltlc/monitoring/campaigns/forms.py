@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 from typing import Protocol
 
-from ltlc.base.provenance import pairs
 from ltlc.base.render.table import aligned
 from ltlc.monitoring.campaigns.outcomes import Outcome, PropertyOutcome
 from ltlc.monitoring.campaigns.places import Found
@@ -111,7 +110,7 @@ class JUnit:
         if outcome.error is not None:
             cases.append(unread_case(str(outcome.error["code"]), str(outcome.error["message"])))
         remarks = [*outcome.remarks, *warnings(outcome.report["diagnostics"])]
-        made_of = pairs(outcome.report.get("provenance", {}))
+        made_of = junit.provenance_pairs(outcome.report.get("provenance", {}))
         self._suites.append(junit.suite_text(outcome.place.name, cases, remarks, made_of))
         return ""
 

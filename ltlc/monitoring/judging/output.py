@@ -15,6 +15,7 @@ cannot stand in the name of a topic.
 from __future__ import annotations
 
 import io
+import json
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
@@ -70,7 +71,7 @@ def verdicts_mcap(report: RunReport) -> bytes:
     for time in (each.time for each in messages):
         if not 0 <= time < 2**31 * SECOND:
             raise NotWritableError(f"times of messages must be between 1970 and 2038, but one is {time} ns")
-    return _written(messages)
+    return _written(messages, report.provenance())
 
 
 def _verdicts(session: Session, track: Track, trail: Trail, name: str) -> Iterator[_Message]:
@@ -124,8 +125,8 @@ def _ends(session: Session) -> tuple[Nanoseconds, Nanoseconds]:
     return session.began, session.time
 
 
-def _written(messages: list[_Message]) -> bytes:
-    """`messages`, in CDR, with the definitions of their types."""
+def _written(messages: list[_Message], provenance: Mapping[str, Any]) -> bytes:
+    """`messages`, in CDR, with the definitions of their types, and what they were made of."""
     store = get_typestore(Stores.ROS2_JAZZY)
     file = io.BytesIO()
     writer = Writer(file)
@@ -140,6 +141,7 @@ def _written(messages: list[_Message]) -> bytes:
             channels[topic] = writer.register_channel(topic, "cdr", schemas[type_])
         data = bytes(store.serialize_cdr(_message(store.types, type_, fields, time), type_))
         writer.add_message(channels[topic], time, data, time, sequence)
+    writer.add_metadata("ltlc", {"provenance": json.dumps(provenance)})
     writer.finish()
     return file.getvalue()
 

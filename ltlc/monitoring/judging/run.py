@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from ltlc.backends.python.load import load_plan
 from ltlc.base.codes import diagnostic
 from ltlc.base.diagnostics import Diagnostic, Severity
-from ltlc.base.provenance import FileDigest, pairs, provenance
+from ltlc.base.provenance import FileDigest, provenance
 from ltlc.base.source import Source
 from ltlc.compiler import Compiled
 from ltlc.dataclass import dataclass
@@ -146,7 +146,7 @@ class RunReport:
         """A JUnit XML report; what kept the recording from being judged whole is an error in it."""
         told = self.diagnostics[-1:] if self.session is None or self.is_damaged else ()
         unread = [unread_case(each.code, each.message) for each in told]
-        made_of = list(pairs(self.provenance()))
+        made_of = list(junit.provenance_pairs(self.provenance()))
         if self.session is None:
             return f"{junit.XML_HEAD}{junit.suite_text(self.recording, unread, (), made_of)}"
         return junit.junit(self.recording, self.session, unread, warnings(self._diagnostics()), made_of)

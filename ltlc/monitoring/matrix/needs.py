@@ -7,7 +7,7 @@ import re
 from itertools import count
 from typing import Any
 
-from ltlc import __version__
+from ltlc.base.revision import version_text
 from ltlc.monitoring.matrix.forms import results_text
 from ltlc.monitoring.matrix.matrix import Matrix, Traced
 
@@ -20,7 +20,7 @@ def needs_json(matrix: Matrix) -> str:
     needs = [_need(each.id, "req", each.text or each.id, each.state.value, "", []) for each in matrix.requirements]
     needs += [_test(id, each) for id, each in zip(test_ids(matrix), matrix.properties, strict=True)]
     version = {
-        "creator": {"program": "ltlc", "version": __version__},
+        "creator": {"program": "ltlc", "version": version_text()},
         "needs": {each["id"]: each for each in needs},
         "needs_amount": len(needs),
     }

@@ -10,7 +10,7 @@ from datetime import UTC, datetime
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element, SubElement
 
-from ltlc import __version__
+from ltlc.base.revision import version_text
 from ltlc.monitoring.matrix.forms import results_text
 from ltlc.monitoring.matrix.matrix import Matrix
 from ltlc.monitoring.matrix.needs import test_ids
@@ -44,9 +44,9 @@ class _Writer:
         header = SubElement(SubElement(root, "THE-HEADER"), "REQ-IF-HEADER", IDENTIFIER="header")
         for name, value in (
             ("CREATION-TIME", self.time),
-            ("REQ-IF-TOOL-ID", f"ltlc {__version__}"),
+            ("REQ-IF-TOOL-ID", f"ltlc {version_text()}"),
             ("REQ-IF-VERSION", "1.0"),
-            ("SOURCE-TOOL-ID", f"ltlc {__version__}"),
+            ("SOURCE-TOOL-ID", f"ltlc {version_text()}"),
             ("TITLE", "Requirements and the properties that verify them"),
         ):
             SubElement(header, name).text = value

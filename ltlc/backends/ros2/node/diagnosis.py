@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from rclpy.node import Node
 from rclpy.serialization import serialize_message
 
 from ltlc.backends.ros2.node.intake import Listener
+from ltlc.runtime.junit import provenance_pairs
 from ltlc.runtime.reports import explanation, printable
 from ltlc.runtime.session import Session
 from ltlc.runtime.silence import lost, malformed, topics
@@ -20,8 +22,12 @@ from ltlc.semantics.verdicts import Verdict
 class Diagnosis:
     """Publishes the state of the properties on /diagnostics."""
 
-    def __init__(self, node: Node) -> None:
+    def __init__(self, node: Node, provenance: Mapping[str, Any]) -> None:
         self._node = node
+        self._made_of = [
+            KeyValue(key=name, value=printable(value))
+            for name, value in provenance_pairs(provenance)
+        ]
         self._publisher = node.create_publisher(DiagnosticArray, "/diagnostics", 10)
         self._echoes: list[deque[bytes]] = []
 
@@ -87,6 +93,7 @@ class Diagnosis:
                 KeyValue(key="invalid steps", value=str(track.invalid)),
                 *(KeyValue(key=key, value=value) for key, value in ids.items()),
                 *(_messages(session, one) for one in heard),
+                *self._made_of,
             ],
         )
 

@@ -7,10 +7,11 @@ import sys
 import threading
 import time
 import traceback
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from signal import SIG_UNBLOCK, SIGINT, SIGTERM, pthread_sigmask
 from signal import signal as on_signal
+from typing import Any
 
 import rclpy
 from rclpy.exceptions import ParameterException
@@ -32,12 +33,13 @@ def run_node(
     name: str,
     plan: Plan,
     topics: Sequence[Topic],
+    provenance: Mapping[str, Any],
     about: str,
     import_ros: Callable[[], None],
 ) -> int:
     """Monitor until a signal, the timeout or a violation ends it; the exit code.
 
-    `pulse` shows a guard that the node lives.
+    `pulse` shows a guard that the node lives; `provenance` is part of what it reports.
 
     rclpy's own signal handlers would shut down the context, and with it the way to
     publish the final verdicts: SIGINT and SIGTERM only ask the loop to end. They may
@@ -58,7 +60,8 @@ def run_node(
         parse_arguments(about)
         rclpy.init(args=sys.argv, signal_handler_options=SignalHandlerOptions.NO)
         node = Node(name, automatically_declare_parameters_from_overrides=True)
-        watch = Watch(node, plan, topics, read_options(node, plan), pulse)
+        options = read_options(node, plan)
+        watch = Watch(node, plan, topics, options, provenance, pulse)
         code = watched(stop, node, watch)
         node.destroy_node()  # else the middleware leaves files in /dev/shm
         return code

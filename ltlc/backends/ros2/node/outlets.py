@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from rclpy.duration import Duration
@@ -15,7 +15,7 @@ from ltlc.backends.ros2.node.files import Lines, test_suites, write_text
 from ltlc.backends.ros2.node.options import Options
 from ltlc.backends.ros2.node.recorder import Recorder
 from ltlc.runtime.documents import document, json_line
-from ltlc.runtime.junit import junit
+from ltlc.runtime.junit import junit, provenance_pairs
 from ltlc.runtime.properties import Change
 from ltlc.runtime.reports import summary
 from ltlc.runtime.sampling import Value
@@ -27,8 +27,11 @@ class Outlets:
 
     KEPT = 1000
 
-    def __init__(self, node: Node, options: Options) -> None:
+    def __init__(
+        self, node: Node, options: Options, provenance: Mapping[str, Any]
+    ) -> None:
         self._node = node
+        self._provenance = provenance
         self._suites: list[str] = []
         self._options = options
         self._lines = None if options.jsonl is None else Lines(options.jsonl)
@@ -84,14 +87,16 @@ class Outlets:
         name = self._node.get_fully_qualified_name()
         data = document(name, session)
         run = len(self._suites) + 1
-        return {"run": run, "final": True, "node": data.pop("recording"), **data}
+        head = {"run": run, "final": True, "node": data.pop("recording")}
+        return {**head, **data, "provenance": self._provenance}
 
     def _with(self, session: Session) -> list[str]:
         """A JUnit report of each run that has ended, and of `session`."""
         name = self._node.get_fully_qualified_name()
         run = len(self._suites) + 1
         suite = name if run == 1 else f"{name} run {run}"
-        return [*self._suites, junit(suite, session)]
+        made_of = provenance_pairs(self._provenance)
+        return [*self._suites, junit(suite, session, properties=made_of)]
 
     def close(self) -> None:
         """Wait until all listeners have received the last verdict."""

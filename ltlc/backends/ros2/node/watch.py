@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from operator import itemgetter
+from typing import Any
 
 from rclpy.node import Node
 
@@ -68,6 +69,7 @@ class Watch:
         plan: Plan,
         topics: Sequence[Topic],
         options: Options,
+        provenance: Mapping[str, Any],
         pulse: Pulse,
     ) -> None:
         self.messages = 0
@@ -80,8 +82,8 @@ class Watch:
         self._ends_on_violation = options.ends_on_violation
         self._verdicts: list[Verdict] = []
         self._waiting: list[Message] = []
-        self._outlets = Outlets(node, options)
-        self._diagnosis = Diagnosis(node)
+        self._outlets = Outlets(node, options, provenance)
+        self._diagnosis = Diagnosis(node, provenance)
         self._locks = Locks(node, [each.label for each in plan.properties])
         service = options.snapshot
         self._snapshot = Snapshot(node, service) if service else None
