@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import ast
 import importlib.util
-from collections.abc import Iterable, Sequence
+import re
+from collections.abc import Iterable, Iterator, Sequence
 from functools import cache
 from pathlib import Path
+from symtable import SymbolTable, symtable
 
 from ltlc.backends.trees import INDENT, LINE_LENGTH
 from ltlc.dataclass import dataclass
@@ -35,6 +37,9 @@ class Import:
         """The name that it gives to what it imports."""
         return self.name.split(" as ")[-1] if self.name else self.module.split(".")[0]
 
+
+_HEADER = re.compile(r'(?s:""".*?""")?(?:\n|(?:import|from|if TYPE_CHECKING:|[ )]).*\n)*')
+"""The docstring and the imports at the top of a module, be they only for types."""
 
 FOR_TYPES = Import("typing", "TYPE_CHECKING")
 """What marks an import as for types only."""
@@ -81,11 +86,13 @@ def inline(modules: Sequence[str], further: Iterable[Import] = ()) -> Program:
 @cache
 def _module(module: str) -> Module:
     text = module_text(module)
-    tree = ast.parse(text)
+    body = _HEADER.sub("", text, count=1)
+    header = ast.parse(text.removesuffix(body))
+    title = (ast.get_docstring(header) or "").split("\n\n")[0]
     return Module(
-        _inlined(text, tree),
-        frozenset(i for node in tree.body for i in _imports(node)),
-        frozenset(name for node in ast.walk(tree) for name in _names(node)),
+        Inlined(" ".join(title.split()), body.strip("\n")),
+        frozenset(i for node in header.body for i in _imports(node)),
+        frozenset(_names(symtable(text, module, "exec"))),
     )
 
 
@@ -132,28 +139,8 @@ def _import_order(name: str) -> tuple[bool, bool, str]:
     return (not name.isupper(), not name[0].isupper(), name.lower())
 
 
-def _inlined(text: str, tree: ast.Module) -> Inlined:
-    """What follows the docstring and the imports, which stand at the top."""
-    title = (ast.get_docstring(tree) or "").split("\n\n")[0]
-    header = [n for n in tree.body if _is_import(n) or n is tree.body[0]]
-    last = max(node.end_lineno or 0 for node in header)
-    return Inlined(" ".join(title.split()), "\n".join(text.split("\n")[last:]).strip("\n"))
-
-
-def _is_import(node: ast.stmt) -> bool:
-    """Whether a statement imports, be it only for types, which all stand in one file."""
-    if isinstance(node, ast.If):
-        return _names(node.test) == [FOR_TYPES.name]
-    return isinstance(node, ast.Import | ast.ImportFrom)
-
-
-def _names(node: ast.AST) -> list[str]:
-    match node:
-        case ast.Name(name) | ast.arg(name):
-            return [name]
-        case ast.FunctionDef(name) | ast.ClassDef(name):
-            return [name]
-        case ast.alias(name, alias):
-            return [alias or name.split(".")[0]]
-        case _:
-            return []
+def _names(table: SymbolTable) -> Iterator[str]:
+    """The names in the text of `table`, those of attributes excepted."""
+    yield from table.get_identifiers()
+    for inner in table.get_children():
+        yield from _names(inner)
