@@ -8,6 +8,7 @@ from ltlc.specification.atoms import with_reads
 from ltlc.specification.evaluation import truth
 from ltlc.specification.expressions import (
     Boolean,
+    Comparison,
     Condition,
     Current,
     Expression,
@@ -46,8 +47,22 @@ def condition_after(condition: Condition, out: str, fallback: Fallback) -> Condi
     if len(known) < len(after):
         return None
     changed: Condition = with_reads(condition, known.__getitem__)
-    is_held = any(True for operand in operands(changed) for _ in reads(operand))
-    return changed if is_held else truth(changed, {})
+    if not any(_is_held(operand) for operand in operands(changed)):
+        return truth(changed, {})
+    return changed if changed == condition else _in_order(changed)
+
+
+def _is_held(expression: Expression) -> bool:
+    return any(True for _ in reads(expression))
+
+
+def _in_order(condition: Condition) -> Condition:
+    """`condition` with a constant on the right, as the language has it, so that equal conditions are the same."""
+    match condition:
+        case Comparison(left, relation, right, margin) if not margin and not _is_held(left):
+            return Comparison(right, relation.flipped, left)
+        case _:
+            return condition
 
 
 def value_in(fallback: Fallback, signal: Signal) -> Constant | None:

@@ -174,7 +174,7 @@ CODES: dict[str, Code] = {
     "LTL705": Code("not-certified", "The monitor could not be certified"),
     "LTL706": Code("unforeseen-letter", "Some values lead to a letter that the alphabet excludes"),
     "LTL707": Code("wrong-text", "The text of the emitted code does not match the monitor"),
-    "LTL708": Code("not-in-target", "The property cannot be written for this target yet"),
+    "LTL708": Code("not-in-target", "The property, or the guard, cannot be written for this target yet"),
     "LTL711": Code("judged-by-rows-only", "A property for each id or message cannot be mined or compared yet"),
     "LTL710": Code("wrong-machine", "The lowered machine does not match the monitor"),
     "LTL709": Code("late-verdict", "A verdict may come later than it could", WARNING),

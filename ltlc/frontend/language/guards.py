@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from ltlc.base.diagnostics import Diagnostic, Label
+from ltlc.base.diagnostics import Diagnostic, Help, Label
 from ltlc.base.fixes import respell, write, writing
 from ltlc.base.source import Span
-from ltlc.frontend.language.define import Settings, topic_name
+from ltlc.frontend.language.define import topic_name
 from ltlc.frontend.language.evaluate import value
 from ltlc.frontend.language.names import Checker
 from ltlc.frontend.language.references import constant_beside, is_short_constant
@@ -15,6 +15,7 @@ from ltlc.frontend.language.signals import from_field
 from ltlc.frontend.language.types import field_of, numbers_of_type, value_kind, values_in
 from ltlc.frontend.language.values import Scalar, Text, Truth, expressions
 from ltlc.frontend.syntax import tree as syntax
+from ltlc.frontend.syntax.lexer import skip_blank
 from ltlc.inputs.messages.definitions import FieldType
 from ltlc.specification.expressions import Boolean, Current, Field, Number, String
 from ltlc.specification.guards import Constant, Fallback, FieldPath, Guard
@@ -25,21 +26,25 @@ from ltlc.specification.wire import Kind, Numbers
 _NOUNS = {"number": "a number", "boolean": "a boolean", "string": "a string"}
 
 
-def guards(
-    checker: Checker, tree: syntax.SyntaxTree, settings: Settings, stated: Sequence[PropertySpecification]
-) -> tuple[Guard, ...]:
+def guards(checker: Checker, tree: syntax.SyntaxTree, stated: Sequence[PropertySpecification]) -> tuple[Guard, ...]:
     """The guards of a file whose properties without errors are `stated`; those with errors are reported and omitted."""
     commands = [command for command in tree.commands if isinstance(command, syntax.Guard)]
+    given = {command.name.text: command for command in tree.commands if isinstance(command, syntax.Setting)}
     if not commands:
+        if "_lead_" in given and tree.lost is None:
+            checker.report("LTL104", given["_lead_"].name.span, "`_lead_` is not used: the file has no guard")
         return ()
-    if settings.rate is not None:
-        _report_rate(checker, tree)
+    if "_rate_" in given:
+        _report_rate(checker, given["_rate_"])
     messages: dict[str, syntax.Message] = {}
     for command in tree.commands:
         if isinstance(command, syntax.Message):
             messages.setdefault(command.name.text, command)
     ends: dict[str, syntax.Word] = {}
     found = [_guard(checker, command, messages, ends) for command in commands]
+    for command in tree.commands:
+        if isinstance(command, syntax.PropertyCommand) and command.label is not None:
+            _check_label(checker, command.label)
     sound = tuple(guard for guard in found if guard is not None)
     for guard in sound:
         _check_properties(checker, guard, stated)
@@ -68,8 +73,19 @@ def _fields(checker: Checker, name: str) -> Iterator[Field]:
             yield part.signal.definition
 
 
-def _report_rate(checker: Checker, tree: syntax.SyntaxTree) -> None:
-    setting = next(c for c in tree.commands if isinstance(c, syntax.Setting) and c.name.text == "_rate_")
+_ASSUMING = ("assume", "assumes", "assumption")
+
+
+def _check_label(checker: Checker, label: syntax.Word) -> None:
+    """An assumption with a colon would be a property, which is kept."""
+    if label.text.lower() in _ASSUMING:
+        colon = Span(label.span.start, skip_blank(checker.source.text, label.span.end) + 1)
+        message = f"`{label.text}` is a label here, and the property is not assumed"
+        help = Help("an assumption is written without a colon", (writing(colon, "assume"),))
+        checker.report("LTL114", label.span, message, help=help)
+
+
+def _report_rate(checker: Checker, setting: syntax.Setting) -> None:
     message = "a file with a guard has no `_rate_`: a guard answers each message when it comes"
     checker.report("LTL114", setting.span, message, help="omit `_rate_`, or put the guard into a file of its own")
 
@@ -129,6 +145,8 @@ def _fallback(
         checker.report("LTL114", name.span, f"`{name.text}` is a fallback twice", Label(twice.span, "the first"))
         return None
     if name.text not in messages:
+        if name.text in checker.lost:
+            return None
         help = respell(name.span, name.text, messages) or f"define it, as in `message {name.text} {{}}`"
         checker.report("LTL101", name.span, f"there is no message `{name.text}`", help=help)
         return None
@@ -224,11 +242,11 @@ def _number(checker: Checker, node: syntax.Constant, number: float, numbers: Num
 
 
 def _check_properties(checker: Checker, guard: Guard, stated: Sequence[PropertySpecification]) -> None:
-    """A guard keeps at least one property, and none of `each`."""
+    """A guard keeps at least one property, and neither keeps nor relies on one of `each`."""
     kept = [each for each in stated if not each.is_assumed and guard.out in topics(each)]
-    for each in kept:
+    for each in [*kept, *(each for each in stated if each.is_assumed)]:
         if each.slicing is not None:
-            message = f"a guard cannot keep a property of `each`, and this one reads `{guard.out}`"
+            message = f"a guard cannot {'rely on' if each.is_assumed else 'keep'} a property of `each`"
             help = "state it without `each`, or put it into another file, where it is only monitored"
             checker.report("LTL114", each.span, message, Label(guard.span, "the guard"), help=help)
     if kept or checker.has_failed:

@@ -36,7 +36,7 @@ MAX_FINDINGS = 200
 """After so many findings the rest of a file is not looked at."""
 
 _WORD = re.compile(r"\w+")
-_LOST_DEFINITION = re.compile(r"\b(?:decl|model|object)\s+(\w+)|\b(\w+)\s*=(?!=)")
+_LOST_DEFINITION = re.compile(r"\b(?:decl|model|object|message)\s+(\w+)|\b(\w+)\s*=(?!=)")
 _COMMENT = re.compile(r'("(?:[^"\\\n]|\\.)*")|#[^\n]*')
 
 
@@ -77,7 +77,7 @@ def sound_part(checker: Checker, tree: syntax.SyntaxTree) -> Specification:
         if isinstance(command, syntax.PropertyCommand):
             stated.add(command)
     else:
-        found = guards(checker, tree, chosen, stated.found)
+        found = guards(checker, tree, stated.found)
         used.update(read_as_commands(checker, found, used))
         _report_unused(checker, used)
         report_similar(checker, tree)
@@ -265,6 +265,7 @@ _USERS = {DefinitionKind.MESSAGE: "guard"}
 
 def _report_unused(checker: Checker, used: set[str]) -> None:
     for kind, word in checker.names.definitions:
-        if word.text not in used:
+        is_lost = kind is DefinitionKind.MESSAGE and "guard" in used  # a word of what could not be parsed
+        if word.text not in used and not is_lost:
             message = f"the {kind.value} `{word.text}` is not used by any {_USERS.get(kind, 'property')}"
             checker.diagnostics.append(diagnostic("LTL104", checker.source, word.span, message))

@@ -497,9 +497,9 @@ def children(node: Node) -> tuple[Node, ...]:
 def runs_on(text: str, first: Node, second: Node) -> bool:
     """Whether a property without a label begins behind another command on its line, with only blanks between them.
 
-    What begins behind a declaration may be its path.
+    What begins behind a declaration may be its path, and behind a guard one more fallback.
     """
-    if not isinstance(first, PropertyCommand | Declaration) or not isinstance(second, PropertyCommand):
+    if not isinstance(first, PropertyCommand | Declaration | Guard) or not isinstance(second, PropertyCommand):
         return False
     between = text[first.span.end : second.span.start]
     return second.label is None and first.span != second.span and between.strip(" \t") == ""
