@@ -48,6 +48,7 @@ class TimedMove(Generic[Letters]):
     letters: Letters
     target: Timed
     fair: frozenset[int]
+    cases: tuple[Case, ...]
 
 
 class OrderedMachine:
@@ -67,9 +68,10 @@ class OrderedMachine:
         if state.clocks not in self._moves:
             self._moves[state.clocks] = list(self._machine.moves(state.clocks, letters, narrowed))
         for move in self._moves[state.clocks]:
-            zone = self._after(state, move.cases)
+            zone = self.after(state, move.cases)
             if zone is not None:
-                yield TimedMove(move.letters, Timed(move.target, self._known(move.target, zone)), move.fair)
+                target = Timed(move.target, self._known(move.target, zone))
+                yield TimedMove(move.letters, target, move.fair, move.cases)
 
     def _known(self, clocks: Clocks, zone: Zone) -> Zone:
         """`zone`, or one around it that has been seen; where they are many, that of all readings."""
@@ -85,7 +87,7 @@ class OrderedMachine:
         most = [0, *(tracker.bounds[state.passed] + 1 for tracker, state in running)]
         return tuple(tuple(0 if i in (0, j) else most[i] for j in range(len(most))) for i in range(len(most)))
 
-    def _after(self, state: Timed, cases: tuple[Case, ...]) -> Zone | None:
+    def after(self, state: Timed, cases: tuple[Case, ...]) -> Zone | None:
         """The zone after an instant at which the trackers do `cases`; None if no times fit."""
         clocks = (self._clock(k, state.clocks, cases[k]) for k in self._timed)
         return _zone_after(state.zone, tuple(clocks))
