@@ -52,10 +52,14 @@ class TimedMove(Generic[Letters]):
 
 
 class OrderedMachine:
-    """`machine` with the order of its clocks; to be used as that is."""
+    """`machine` with the order of its clocks; to be used as that is.
 
-    def __init__(self, machine: ResetMachine) -> None:
+    If it is `exact`, a zone stands for itself as long as there are few; otherwise one around it does, where there is.
+    """
+
+    def __init__(self, machine: ResetMachine, *, exact: bool = False) -> None:
         self._machine = machine
+        self._exact = exact
         self._moves: dict[Clocks, list[Move[Any]]] = {}
         self._zones: dict[Clocks, list[Zone]] = {}
         self.trackers = machine.trackers
@@ -76,7 +80,8 @@ class OrderedMachine:
     def _known(self, clocks: Clocks, zone: Zone) -> Zone:
         """`zone`, or one around it that has been seen; where they are many, that of all readings."""
         zones = self._zones.setdefault(clocks, [])
-        found = next((each for each in zones if is_inside(zone, each)), None)
+        exact = self._exact and len(zones) <= MOST_ZONES
+        found = next((each for each in zones if each == zone or not exact and is_inside(zone, each)), None)
         if found is None:
             found = zone if len(zones) < MOST_ZONES else self._everything(clocks)
             zones.append(found)

@@ -48,7 +48,7 @@ class Game:
 
     def __init__(self, arena: Arena, *, ordered: bool = False) -> None:
         self.arena = arena
-        self._machines = [OrderedMachine(p.time) if ordered and p.has_order else p.time for p in arena.parts]
+        self._machines = [OrderedMachine(p.time, exact=True) if ordered and p.has_order else p.time for p in arena.parts]
         self.diagrams = Diagrams()
         decided = (a for p in arena.parts for a in (*p.news, *(a for t in p.time.trackers for a in t.atoms)))
         self.atoms = tuple(arena.read)
