@@ -81,7 +81,7 @@ class OrderedMachine:
         """`zone`, or one around it that has been seen; where they are many, that of all readings."""
         zones = self._zones.setdefault(clocks, [])
         exact = self._exact and len(zones) <= MOST_ZONES
-        found = next((each for each in zones if each == zone or not exact and is_inside(zone, each)), None)
+        found = next((each for each in zones if each == zone or (not exact and is_inside(zone, each))), None)
         if found is None:
             found = zone if len(zones) < MOST_ZONES else self._everything(clocks)
             zones.append(found)

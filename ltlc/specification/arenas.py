@@ -55,13 +55,20 @@ def together(guards: Sequence[Guard], properties: Iterable[PropertySpecification
     return [tuple(guards[n] for n in sorted(some)) for some in sorted(sets, key=min)]
 
 
+def conditions_held(guards: Sequence[Guard], properties: Iterable[PropertySpecification]) -> dict[str, Atom]:
+    """The conditions on values that are followed in the game of `guards` about `properties`, by their names.
+
+    Some are there only because a fallback leads to them.
+    """
+    return _with_effects(guards, properties)[0]
+
+
 def arena_of(guards: Sequence[Guard], properties: Iterable[Property]) -> Arena:
     """What the game of `guards` about `properties` is played on."""
     parts = [each for each in properties if is_in_game(each.specification, guards)]
     outs = tuple(guard.out for guard in guards)
-    atoms = {a.name: a for p in parts for a in p.specification.atoms if not _is_news(a)}
-    sendings = [(guard, fallback) for guard in guards for fallback in guard.fallbacks]
-    effects = _effects(atoms, sendings)
+    sendings = _sendings(guards)
+    atoms, effects = _with_effects(guards, (each.specification for each in parts))
     read = {name: frozenset(_topics(atom)) for name, atom in atoms.items()}
     counts = {count.name: frozenset[str]() for p in parts for count in counts_of(p.formula)}
     loose = frozenset({*counts, *(name for name, atom in atoms.items() if _has_openings(atom))})
@@ -77,11 +84,20 @@ def arena_of(guards: Sequence[Guard], properties: Iterable[Property]) -> Arena:
     )
 
 
-def _effects(atoms: dict[str, Atom], sendings: Sequence[tuple[Guard, Fallback]]) -> list[dict[str, bool | str | None]]:
-    """What each of `atoms` is after each fallback.
+def _sendings(guards: Iterable[Guard]) -> list[tuple[Guard, Fallback]]:
+    return [(guard, fallback) for guard in guards for fallback in guard.fallbacks]
 
-    It may be a condition on what was held that no property has: that is added to `atoms`, and followed as they are.
+
+def _with_effects(
+    guards: Sequence[Guard], properties: Iterable[PropertySpecification]
+) -> tuple[dict[str, Atom], list[dict[str, bool | str | None]]]:
+    """The conditions, and what each is after each fallback.
+
+    That may be a condition on what was held that no property has: it is followed as the others are.
     """
+    own = (each for each in properties if is_in_game(each, guards))
+    atoms = {atom.name: atom for each in own for atom in each.atoms if not _is_news(atom)}
+    sendings = _sendings(guards)
     effects: list[dict[str, bool | str | None]] = [{} for _ in sendings]
     names = list(atoms)
     for name in names:
@@ -96,7 +112,7 @@ def _effects(atoms: dict[str, Atom], sendings: Sequence[tuple[Guard, Fallback]])
                 atoms[same] = Atom(same, condition, atoms[name].span)
                 names.append(same)
             effect[name] = same
-    return effects
+    return atoms, effects
 
 
 def _condition_text(condition: Condition) -> str:

@@ -48,7 +48,9 @@ class Game:
 
     def __init__(self, arena: Arena, *, ordered: bool = False) -> None:
         self.arena = arena
-        self._machines = [OrderedMachine(p.time, exact=True) if ordered and p.has_order else p.time for p in arena.parts]
+        self._machines = [
+            OrderedMachine(p.time, exact=True) if ordered and p.has_order else p.time for p in arena.parts
+        ]
         self.diagrams = Diagrams()
         decided = (a for p in arena.parts for a in (*p.news, *(a for t in p.time.trackers for a in t.atoms)))
         self.atoms = tuple(arena.read)
@@ -122,9 +124,8 @@ class Game:
             return self._own[key]
         part, found = self.arena.parts[k], dict[_Own, Diagram]()
         news = {self._levels[name]: of == topic for name, of in part.news.items()}
-        asked_late = place.reset.is_first and bool(part.waits)  # ages count from before the beginning
         for move in self._moves_from(k, place):
-            if not move.lasts if topic is None else move.passing and not asked_late:
+            if not move.lasts if topic is None else move.passing:
                 continue
             answers = news | move.decided
             letters = self.diagrams.given(answers, move.letters)

@@ -1,4 +1,4 @@
-"""Where guards may rest: the greatest region of an arena, as a greatest fixed point on diagrams.
+"""Where guards may rest: the greatest region of an arena, as a greatest fixed point on decision diagrams.
 
 Every guard with the same fallbacks that is sure to keep the properties rests nowhere else, as far as letters and the
 order of clocks tell (Coq: `necessary`).
@@ -27,7 +27,9 @@ class Solution:
     """The game on an arena with a region: what is asked of one, whether it is the greatest yet or not."""
 
     game: Game
-    rests: dict[Joint, Diagram]
+    rests: Mapping[Joint, Diagram]
+    wider: Solution | None = None
+    """The region before, of which this one has what is safe; None of the first, which has all that is not violated."""
     _answered: dict[Joint, Diagram] = field(default_factory=dict)
 
     def resting(self, joint: Joint) -> Diagram:
@@ -36,7 +38,12 @@ class Solution:
 
     def answers(self, joint: Joint) -> Iterator[tuple[int, Diagram]]:
         """The letters after which a fallback may be sent at once, by its number."""
-        return self._sending(joint, lambda step: self.resting(step.joint))
+        return self._sending(joint, self.sent_well)
+
+    def sent_well(self, step: Step) -> Diagram:
+        """The letters at which it is good to have sent something: the guards may rest, and broke no assumption."""
+        is_over = self.game.arena.outcome(step.joint) is not None
+        return self.game.diagrams.false if is_over else self.resting(step.joint)
 
     def answered(self, joint: Joint) -> Diagram:
         """The letters after which the guards may rest, or send a fallback at once."""
@@ -56,7 +63,7 @@ class Solution:
             left = passing - step.fresh
             late = {s: letters for s, letters in self.game.steps(step.joint, None).items() if s.passing & left}
             good = self.game.before_message(None, self.game.lead_to(late, self._is_answered))
-            return self.game.diagrams.conjunction(self.resting(step.joint), good)
+            return self.game.diagrams.conjunction(self.sent_well(step), good)
 
         return self._sending(joint, safe)
 
@@ -88,16 +95,14 @@ class Solution:
             found = game.diagrams.conjunction(found, good)
         return found
 
-    def narrow(self) -> bool:
-        """Take away the letters that are not safe; whether there were any."""
-        self._answered.clear()
-        changed = False
-        for joint, letters in self.rests.items():
-            if self.game.arena.outcome(joint) is None:
-                here = self.game.diagrams.conjunction(letters, self.safe(joint))
-                changed |= here != letters
-                self.rests[joint] = here
-        return changed
+    def narrowed(self) -> Solution:
+        """What is safe of it; itself, if all is."""
+        outcome = self.game.arena.outcome
+        rests = {
+            joint: self.game.diagrams.conjunction(letters, self.safe(joint)) if outcome(joint) is None else letters
+            for joint, letters in self.rests.items()
+        }
+        return self if rests == self.rests else Solution(self.game, rests, self)
 
     def let_through(self, out: str) -> Diagram:
         """The letters after some message on the topic `out` that is let through, wherever the guards rested before.
@@ -107,7 +112,7 @@ class Solution:
 
         def good(step: Step) -> Diagram:
             has_begun = Outcome.WAITING not in step.joint.standings
-            return self.resting(step.joint) if has_begun else self.game.diagrams.false
+            return self.sent_well(step) if has_begun else self.game.diagrams.false
 
         found = self.game.diagrams.false
         for joint in self.rests:
@@ -169,8 +174,8 @@ def _solved(game: Game) -> Solution:
     violated = Outcome.VIOLATED
     rests = {joint: game.diagrams.terminal(game.arena.outcome(joint) is not violated) for joint in reachable(game)}
     solution = Solution(game, rests)
-    while solution.narrow():
-        pass
+    while (narrowed := solution.narrowed()) is not solution:
+        solution = narrowed
     return solution
 
 

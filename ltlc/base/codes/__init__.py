@@ -136,6 +136,12 @@ CODES: dict[str, Code] = {
         "goal-on-the-way", "The goal is reached by whatever satisfies another property", NOTE, pedantic=True
     ),
     "LTL606": Code("excluded-deadline", "After a trigger, the times of two properties are incompatible", WARNING),
+    "LTL610": Code("guard-passes-nothing", "A guard lets nothing through"),
+    "LTL611": Code("guard-begins-never", "A guard has nothing to begin with"),
+    "LTL612": Code("guard-holds-back", "A guard never lets some commands through that violate nothing", WARNING),
+    "LTL613": Code("guard-takes-back", "A guard lets commands through and takes them back", NOTE),
+    "LTL614": Code("short-for-guard", "A time bound is shorter than the lead of a guard", WARNING),
+    "LTL615": Code("watched-only", "No guard keeps the property", NOTE),
     "LTL690": Code("not-decided", "A question about the specification was not decided", NOTE),
     "LTL691": Code("idle-suppression", "A comment suppresses nothing", NOTE),
     "LTL701": Code("translation-exceeded", "The budget is too small to build the monitor"),
