@@ -78,19 +78,19 @@ VALUES: dict[str, dict[str, list[object]]] = {
 CONDITIONS = ["speed <= 0.2", "speed >= 1", "near", "new speed", "speed <= limit", "new near"]
 
 
-def drawn(chance: random.Random) -> Drawn:
-    """A guard with one or two properties and up to two fallbacks."""
+def drawn(chance: random.Random, *, timed: bool = True) -> Drawn:
+    """A guard with one or two properties and up to two fallbacks; without clocks unless it is `timed`."""
     speeds = chance.sample([0.0, 1.0], chance.choice([0, 1, 1, 1, 2]))
     fallbacks: dict[str, dict[str, object]] = {f"f{n}": {"speed": speed} for n, speed in enumerate(speeds)}
     messages = "".join(f"message {name} {{data: {values['speed']}}}\n" for name, values in fallbacks.items())
     otherwise = f" else {', '.join(fallbacks)}" if fallbacks else ""
-    properties = "".join(f"p{n}: {_property(chance)}\n" for n in range(chance.choice([1, 1, 2])))
+    properties = "".join(f"p{n}: {_property(chance, timed)}\n" for n in range(chance.choice([1, 1, 2])))
     text = f"{DECLARATIONS}guard /raw to /cmd{otherwise}\n{messages}{properties}"
     read = {topic: of for topic, of in VALUES.items() if topic == "/cmd" or next(iter(of)) in properties}
     return Drawn(text, read, fallbacks, [10 * MS, 20 * MS])
 
 
-def _property(chance: random.Random) -> str:
+def _property(chance: random.Random, timed: bool) -> str:
     def condition(depth: int = 2) -> str:
         match chance.randrange(6 if depth else 3):
             case 3:
@@ -104,15 +104,15 @@ def _property(chance: random.Random) -> str:
                 return f"not {written}" if chance.random() < 0.3 else written
 
     about = f"({chance.choice(['speed <= 0.2', 'speed <= limit', 'new speed', 'speed >= 1'])})"
-    match chance.randrange(6):
+    match chance.randrange(6 if timed else 3):
         case 0:
             return f"always ({condition()} implies {about})"
         case 1:
-            return f"always ({condition()} implies eventually {about} within {chance.choice([10, 20])} ms)"
-        case 2:
             return f"never ({condition()} and {about})"
-        case 3:
+        case 2:
             return f"after_until near, not near, always ({condition(1)} or {about})"
+        case 3:
+            return f"always ({condition()} implies eventually {about} within {chance.choice([10, 20])} ms)"
         case 4:
             return f"always (new speed implies not previously once (new speed and {condition(0)}) within 10 ms)"
         case _:

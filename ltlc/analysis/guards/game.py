@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from functools import reduce
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from ltlc.automata.machine import valuations
 from ltlc.semantics.arenas import Arena, Joint, Outcome, Part, Place, Sending, Sent, Standing, Ticks, standing
@@ -48,7 +48,7 @@ class Game:
 
     def __init__(self, arena: Arena, *, ordered: bool = False) -> None:
         self.arena = arena
-        self._machines = [
+        self._machines: list[Any] = [
             OrderedMachine(p.time, exact=True) if ordered and p.has_order else p.time for p in arena.parts
         ]
         self.diagrams = Diagrams()
@@ -58,12 +58,14 @@ class Game:
         self._levels = {name: level for level, name in enumerate(names)}
         groups = (valuations(self.diagrams, self.atoms, group) for group in arena.alphabet.groups)
         self.possible = self.all_of(groups)
-        self._rows = [
-            rows(self.diagrams, p.monitor.decisions, lambda a, p=p: self.atom(p.monitor.atoms[a])) for p in arena.parts
-        ]
+        self._rows = [self._rows_of(part) for part in arena.parts]
         self._moves: dict[tuple[int, object], list[_Move]] = {}
         self._own: dict[tuple[int, Place, str | None], dict[_Own, Diagram]] = {}
         self._steps: dict[tuple[Joint, str | None], Steps] = {}
+
+    def _rows_of(self, part: Part) -> Callable[[int], Diagram]:
+        atoms = part.monitor.atoms
+        return rows(self.diagrams, part.monitor.decisions, lambda asked: self.atom(atoms[asked]))
 
     def atom(self, name: str) -> Diagram:
         """The letters in which the atom of that name holds."""
@@ -203,7 +205,7 @@ class _Move(NamedTuple):
 
     letters: Diagram
     target: Clocks | Timed
-    decided: Mapping[int, bool]
+    decided: dict[int, bool]
     lasts: bool
     passing: Ticks
     fresh: Ticks

@@ -14,7 +14,7 @@ from ltlc.analysis.guards.plays import Turn, letter_of, play
 from ltlc.analysis.guards.solution import Solution, TooManyPlacesError, solve
 from ltlc.analysis.subjects import Study, Subject
 from ltlc.analysis.wording import listed
-from ltlc.semantics.arenas import Arena, Joint, Outcome, Part, Ticks
+from ltlc.semantics.arenas import Arena, Outcome, Part, Ticks
 from ltlc.semantics.diagrams import Diagram
 from ltlc.semantics.durations import duration_text
 from ltlc.semantics.words import Letter
@@ -88,27 +88,26 @@ def of_commands(game: Game, letters: Diagram, out: str) -> Diagram:
     return letters
 
 
-def harmless(solution: Solution, out: str) -> Iterator[tuple[Joint, Step, Diagram]]:
+def harmless(solution: Solution, out: str) -> Iterator[tuple[Step, Diagram]]:
     """The steps by commands on `out`, from where the guards may rest, that violate nothing by themselves."""
     game = solution.game
-    for joint in solution.rests:
-        if joint.sent is not None and game.arena.outcome(joint) is None and game.exists(solution.resting(joint)):
-            for step, letters in game.steps(joint, out).items():
-                if Outcome.WAITING not in step.joint.standings and game.arena.outcome(step.joint) is None:
-                    yield joint, step, game.diagrams.conjunction(letters, game.possible)
+    for joint in solution.visited:
+        for step, letters in game.steps(joint, out).items():
+            if Outcome.WAITING not in step.joint.standings and game.arena.outcome(step.joint) is None:
+                yield step, game.diagrams.conjunction(letters, game.possible)
 
 
 def held_back(solution: Solution, out: str) -> Diagram:
     """The commands that violate nothing by themselves and are never let through."""
     game, d = solution.game, solution.game.diagrams
-    may = of_commands(game, game.any_of(letters for _, _, letters in harmless(solution, out)), out)
+    may = of_commands(game, game.any_of(letters for _, letters in harmless(solution, out)), out)
     return d.conjunction(may, d.negation(of_commands(game, solution.let_through(out), out)))
 
 
 def shortest_play(solution: Solution, out: str, commands: Diagram) -> tuple[Letter, list[Turn]] | None:
     """What is held after one of `commands` that is held back, and a shortest way in which it would end badly."""
     d, found = solution.game.diagrams, []
-    for _, step, letters in harmless(solution, out):
+    for step, letters in harmless(solution, out):
         bad = d.conjunction(d.conjunction(letters, commands), d.negation(solution.resting(step.joint)))
         letter = letter_of(solution, bad, {})
         if letter is not None:

@@ -6,8 +6,9 @@ order of clocks tell (Coq: `necessary`).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 
 from ltlc.analysis.guards.game import Game, Step
 from ltlc.semantics.arenas import Arena, Joint, Outcome, Region, Ticks
@@ -104,22 +105,34 @@ class Solution:
         }
         return self if rests == self.rests else Solution(self.game, rests, self)
 
-    def let_through(self, out: str) -> Diagram:
-        """The letters after some message on the topic `out` that is let through, wherever the guards rested before.
+    @cached_property
+    def visited(self) -> Sequence[Joint]:
+        """The joint places that guards which keep to the region can come to, where they may send.
 
-        Until all properties have begun, none is.
+        Until all properties have begun, nothing but fallbacks leaves them.
         """
+        arena, found = self.game.arena, {self.game.arena.start: None}
+        sends = {sending.out for sending in arena.fallbacks}
+        for joint in (queue := list(found)):
+            for topic in (None, *arena.others, *(() if joint.sent is None else arena.outs)):
+                for step in self.game.steps(joint, topic):
+                    is_sent = topic in arena.outs
+                    may = topic in sends or Outcome.WAITING not in step.joint.standings
+                    good = self.sent_well(step) if is_sent else self.answered(step.joint)
+                    if step.joint not in found and (may or not is_sent) and self.game.exists(good):
+                        found[step.joint] = None
+                        queue.append(step.joint)
+        return [j for j in found if j.sent is not None and arena.outcome(j) is None]
 
-        def good(step: Step) -> Diagram:
-            has_begun = Outcome.WAITING not in step.joint.standings
-            return self.sent_well(step) if has_begun else self.game.diagrams.false
-
-        found = self.game.diagrams.false
-        for joint in self.rests:
-            if joint.sent is not None and self.game.arena.outcome(joint) is None:
-                for step, letters in self.game.steps(joint, out).items():
-                    found = self.game.any_of((found, self.game.diagrams.conjunction(letters, good(step))))
-        return self.game.diagrams.conjunction(self.game.possible, found)
+    def let_through(self, out: str) -> Diagram:
+        """The letters after some message on the topic `out` that is let through, wherever the guards rested before."""
+        game, found = self.game, self.game.diagrams.false
+        for joint in self.visited:
+            for step, letters in game.steps(joint, out).items():
+                if Outcome.WAITING not in step.joint.standings:
+                    passed = game.diagrams.conjunction(letters, self.sent_well(step))
+                    found = game.diagrams.disjunction(found, passed)
+        return game.diagrams.conjunction(game.possible, found)
 
     def region(self) -> Region:
         """As data, for checkers and for what runs."""

@@ -29,7 +29,7 @@ def ask(study: Study) -> Iterator[Finding]:
 def _taken_back(solution: Solution, guard: Guard) -> Iterator[tuple[int, Diagram]]:
     """After which letters a clock runs that the command has started and only the guard stops, by the part with it."""
     game, found = solution.game, dict[int, Diagram]()
-    for _, step, letters in harmless(solution, guard.out):
+    for step, letters in harmless(solution, guard.out):
         for part in {part for part, _ in _started(solution, step)}:
             own: Ticks = frozenset(tick for tick in _started(solution, step) if tick[0] == part)
             late = {s: those for s, those in game.steps(step.joint, None).items() if s.passing & own}
