@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 
 from ltlc.analysis.atom_words import atom_text
@@ -14,6 +14,7 @@ from ltlc.analysis.guards.plays import Turn, letter_of, play
 from ltlc.analysis.guards.solution import Solution, TooManyPlacesError, solve
 from ltlc.analysis.subjects import Study, Subject
 from ltlc.analysis.wording import listed
+from ltlc.dataclass import dataclass
 from ltlc.semantics.arenas import Arena, Outcome, Part, Ticks
 from ltlc.semantics.diagrams import Diagram
 from ltlc.semantics.durations import duration_text

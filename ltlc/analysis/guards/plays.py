@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 from ltlc.analysis.guards.game import Step
 from ltlc.analysis.guards.solution import Solution, by_clocks
+from ltlc.dataclass import dataclass
 from ltlc.semantics.arenas import Joint, Outcome
 from ltlc.semantics.diagrams import Diagram
 from ltlc.semantics.words import Letter

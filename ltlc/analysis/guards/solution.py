@@ -7,10 +7,11 @@ order of clocks tell (Coq: `necessary`).
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 
 from ltlc.analysis.guards.game import Game, Step
+from ltlc.dataclass import dataclass
 from ltlc.semantics.arenas import Arena, Joint, Outcome, Region, Ticks
 from ltlc.semantics.diagrams import Diagram, formulas
 from ltlc.semantics.ltl import Atom
