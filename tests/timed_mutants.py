@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Iterable, Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import Any, NamedTuple, Protocol
 
 from exact_time import RunsOf, Situation
@@ -14,6 +14,7 @@ from ltlc.backends.names import variable
 from ltlc.backends.python.functions import function_texts
 from ltlc.backends.python.monitors import runtime_class, standalone_class, told
 from ltlc.compiler import Compiled
+from ltlc.dataclass import dataclass
 from ltlc.semantics.ltl import FALSE, TRUE, Formula, Not
 from ltlc.semantics.monitor import Monitor
 from ltlc.semantics.timed_atoms import (
