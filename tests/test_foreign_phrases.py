@@ -337,7 +337,7 @@ def test_the_page_shows_the_answers() -> None:
 
 
 def test_each_phrase_is_tried_here() -> None:
-    lines = [each[0] for each in (*SAME, *OTHERS, *GUARDS)]
+    lines = [each[0] for each in SAME] + [each[0] for each in OTHERS] + [each[0] for each in GUARDS]
     lines += [
         "decl w /w a::B.c",
         "decl w /w B c",

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from ltlc.base.source import Span
+from ltlc.dataclass import dataclass
 from ltlc.semantics.durations import UNITS, Nanoseconds
 from ltlc.specification.expressions import Boolean, Number, String
 

@@ -170,7 +170,8 @@ def _fallback(
 
 def _constant(checker: Checker, node: syntax.Constant, message: str) -> tuple[FieldPath, Constant] | None:
     """The field of a message that `node` gives a value, and that value; None if an error was reported."""
-    type_, path = FieldType(message), ()
+    type_ = FieldType(message)
+    path: FieldPath = ()
     for step in (node.path.name, *node.path.steps):
         if not isinstance(step, syntax.Word):
             text = "a message gives no value to elements of arrays: they are empty, or zero"
@@ -193,13 +194,13 @@ def _constant(checker: Checker, node: syntax.Constant, message: str) -> tuple[Fi
 def _report_no_single_value(checker: Checker, node: syntax.Constant, type_: FieldType) -> None:
     written = checker.written(node.path)
     if type_.is_list:
-        help = "omit it: an array that is not named is empty, or zero"
-        checker.report("LTL241", node.path.span, f"`{written}` is an array: a message gives arrays no value", help=help)
+        omit = "omit it: an array that is not named is empty, or zero"
+        checker.report("LTL241", node.path.span, f"`{written}` is an array: a message gives arrays no value", help=omit)
         return
     inside = values_in(type_.base, checker.types) if type_.base in checker.types.messages else []
     fixes = [writing(node.path.span, f"{written}.{path}") for path in inside[:3]]
-    help = write(*fixes) if fixes else ""
-    checker.report("LTL241", node.path.span, f"`{written}` is `{type_}`, not a single value", help=help)
+    message = f"`{written}` is `{type_}`, not a single value"
+    checker.report("LTL241", node.path.span, message, help=write(*fixes) if fixes else "")
 
 
 def _value(checker: Checker, node: syntax.Constant, kind: str, field: Field) -> Constant | None:
