@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+from dataclasses import replace
 
 import pytest
 from effort import share_of
@@ -11,7 +12,7 @@ from guarding import MS, Brute, Drawn, Event, Followed, drawn, loaded
 from ltlc.analysis.analyse import study_of
 from ltlc.analysis.guards.plays import play
 from ltlc.analysis.guards.solution import solve
-from ltlc.analysis.questions import guard_holds_back, guard_passes_nothing, guard_takes_back
+from ltlc.analysis.questions import guard_holds_back, guard_passes_nothing, guard_takes_back, uncontrollable
 from ltlc.automata import Budget
 from ltlc.semantics.arenas import Outcome
 from ltlc.semantics.encodings import EPISODE
@@ -79,6 +80,7 @@ message stop {linear.x: 0}
 guard /cmd_vel_raw to /cmd_vel"""
 
 PASSES_NOTHING, BEGINS_NEVER, HOLDS_BACK, TAKES_BACK = "LTL610", "LTL611", "LTL612", "LTL613"
+UNCONTROLLABLE, CONTROLLABLE, NOT_DECIDED = "LTL616", "LTL617", "LTL690"
 
 AS_WRITTEN: dict[str, tuple[str, set[str]]] = {
     "slow near obstacles, at once": ("else stop\np: always (min(scan) < 0.5 implies speed <= 0.2)", {HOLDS_BACK}),
@@ -135,6 +137,40 @@ def test_a_guard_as_people_write_it_has_its_findings(name: str) -> None:
     study = study_of(specification, EPISODE, Budget())
     asked = (guard_passes_nothing, guard_holds_back, guard_takes_back)
     assert {finding.code for question in asked for finding in question.ask(study)} == expected
+
+
+COMMANDS = """decl speed /cmd_vel geometry_msgs/Twist.linear.x
+decl near /near std_msgs/Bool.data
+decl x /odom nav_msgs/Odometry.pose.pose.position.x
+"""
+
+CONTROLLED: dict[str, tuple[str, set[str]]] = {
+    "where the robot is": ("p: always x <= 10 or speed > 5", {CONTROLLABLE}),
+    "where the robot is, and a limit": ("p: always (x <= 10 or speed > 5)\nq: always (x > 9 implies speed < 1)", {UNCONTROLLABLE}),
+    "slow in time": ("p: always (near implies eventually speed <= 0 within 100 ms)", {CONTROLLABLE}),
+    "both within a time, with one message each": (
+        "p: always (near implies eventually speed > 1 within 100 ms)\n"
+        "q: always (near implies eventually speed < 0 within 100 ms)",
+        {CONTROLLABLE},
+    ),
+    "a goal again and again": ("p: always eventually speed > 1", {CONTROLLABLE}),
+    "a goal that the world forbids": (
+        "p: always eventually speed > 1\nq: always (near implies speed <= 0)",
+        {CONTROLLABLE, UNCONTROLLABLE},
+    ),
+    "a goal of the world's": ("p: always (eventually near or speed > 1)", {CONTROLLABLE}),
+    "a goal, some time after a message": ("p: always (new near implies eventually speed > 1)", {CONTROLLABLE, NOT_DECIDED}),
+    "nothing to command": ("p: always (near implies eventually x > 1)", set()),
+}
+
+
+@pytest.mark.parametrize("name", CONTROLLED)
+def test_whether_a_controller_can_keep_properties_is_answered(name: str) -> None:
+    text, expected = CONTROLLED[name]
+    specification, _ = loaded(f"{COMMANDS}{text}\n")
+    study = replace(study_of(specification, EPISODE, Budget()), controls=("/cmd_vel",))
+    found = [*uncontrollable.ask(study), *uncontrollable.ask_of_obligations(study)]
+    assert {finding.code for finding in found} == expected
 
 
 def test_an_emergency_stop_that_was_released_before_the_first_command_is_not_forgotten() -> None:

@@ -9,6 +9,7 @@ from functools import cached_property
 from ltlc.analysis.atom_words import atom_text
 from ltlc.analysis.errors import NotDecidedError
 from ltlc.analysis.examples import Example, rows_of, shown
+from ltlc.analysis.guards.controls import with_any_command
 from ltlc.analysis.guards.game import Game, Step
 from ltlc.analysis.guards.plays import Turn, letter_of, play
 from ltlc.analysis.guards.solution import Solution, TooManyPlacesError, solve
@@ -27,16 +28,25 @@ from ltlc.specification.specification import topics_of
 
 @dataclass(frozen=True)
 class Guarded:
-    """Guards in one game, and the properties in it."""
+    """Guards in one game, and the properties in it; with `any_command` they may send whatever exists."""
 
     study: Study
     guards: tuple[Guard, ...]
     subjects: tuple[Subject, ...]
+    any_command: bool = False
 
     @cached_property
     def solution(self) -> Solution:
         """The game, solved. Raises NotDecidedError."""
-        return _solution(arena_of(self.guards, self._properties()))
+        arena = arena_of(self.guards, self._properties())
+        try:
+            return solve(with_any_command(arena) if self.any_command else arena)
+        except TooManyPlacesError as error:
+            raise NotDecidedError(f"the game {error}") from None
+
+    def passes(self, out: str) -> bool:
+        """Whether anything is ever let through on the topic `out`."""
+        return self.solution.let_through(out) != self.solution.game.diagrams.false
 
     def _properties(self) -> Iterator[Property]:
         for subject in self.subjects:
@@ -51,7 +61,7 @@ class Guarded:
 
     def without(self, left_out: Subject) -> Guarded:
         """The same guards with a property less."""
-        return Guarded(self.study, self.guards, tuple(each for each in self.subjects if each is not left_out))
+        return replace(self, subjects=tuple(each for each in self.subjects if each is not left_out))
 
     def because_of(self, holds: Callable[[Guarded], bool]) -> Guarded:
         """As few of the kept properties as go, of which what `holds` of all of them still does."""
@@ -66,19 +76,14 @@ class Guarded:
 def games(study: Study) -> list[Guarded]:
     """The games of the guards of a specification that have something to keep."""
     specification = study.specification
-    sets = together(specification.guards, specification.properties)
-    found = [
-        Guarded(study, guards, tuple(s for s in study.subjects if is_in_game(s.specification, guards)))
-        for guards in sets
-    ]
+    found = (game_of(study, guards) for guards in together(specification.guards, specification.properties))
     return [each for each in found if each.kept]
 
 
-def _solution(arena: Arena) -> Solution:
-    try:
-        return solve(arena)
-    except TooManyPlacesError as error:
-        raise NotDecidedError(f"the game {error}") from None
+def game_of(study: Study, guards: tuple[Guard, ...], *, any_command: bool = False) -> Guarded:
+    """The game of `guards` with the properties that they keep or rely on."""
+    subjects = tuple(subject for subject in study.subjects if is_in_game(subject.specification, guards))
+    return Guarded(study, guards, subjects, any_command)
 
 
 def of_commands(game: Game, letters: Diagram, out: str) -> Diagram:
@@ -155,7 +160,8 @@ def _remark(arena: Arena, turn: Turn) -> str:
         if at is Outcome.VIOLATED and not part.is_assumed
     ]
     what = _time(arena.parts, turn.step.passing) if turn.topic is None else f"a message on {turn.topic}"
-    names = listed([f"`{arena.fallbacks[number].name}`" for number in turn.vain], "or") if turn.vain else ""
+    tried = [f"`{name}`" for number in turn.vain if (name := arena.fallbacks[number].name)]
+    names = listed(tried, "or") if tried else ""
     said = [f"{what}: {listed(violated)} {'is' if len(violated) == 1 else 'are'} violated" if violated else what]
     if names and (turn.step.passing or not violated):
         said.append(f"{names}{' before that' if turn.step.passing else ''} would not help")

@@ -27,6 +27,7 @@ from ltlc.analysis.questions import (
     same_signal,
     short_bound,
     short_for_guard,
+    uncontrollable,
     unreachable_count,
     unsatisfiable,
     vacuous_part,
@@ -109,5 +110,7 @@ OF_FILES = (
     FileQuestion("a guard lets nothing through", guard_passes_nothing.ask),
     FileQuestion("a guard never lets some commands through", guard_holds_back.ask),
     FileQuestion("a guard takes commands back", guard_takes_back.ask),
+    FileQuestion("a controller can prevent violations", uncontrollable.ask),
+    FileQuestion("a controller can fulfil what is owed", uncontrollable.ask_of_obligations),
 )
 """About the whole file."""

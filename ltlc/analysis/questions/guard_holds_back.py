@@ -22,12 +22,8 @@ def ask(study: Study) -> Iterator[Finding]:
     """A warning for each guard that has such commands, with the properties that are to blame."""
     for guarded in games(study):
         for guard in guarded.guards:
-            if _passes_some(guarded, guard) and _holds_some_back(guarded, guard):
+            if guarded.passes(guard.out) and _holds_some_back(guarded, guard):
                 yield _finding(guarded, guard)
-
-
-def _passes_some(guarded: Guarded, guard: Guard) -> bool:
-    return guarded.solution.let_through(guard.out) != guarded.solution.game.diagrams.false
 
 
 def _holds_some_back(guarded: Guarded, guard: Guard) -> bool:

@@ -16,17 +16,13 @@ def ask(study: Study) -> Iterator[Finding]:
     """An error for each guard that lets nothing through, with the properties that are to blame."""
     for guarded in games(study):
         for guard in guarded.guards:
-            if _passes(guarded, guard):
+            if guarded.passes(guard.out):
                 continue
             waiting = [p.label for p in guarded.solution.game.arena.parts if guard.out in p.waits and p.history]
             if waiting and not guard.fallbacks:
                 yield _begins_never(guard, waiting)
             else:
                 yield _nothing(guarded, guard)
-
-
-def _passes(guarded: Guarded, guard: Guard) -> bool:
-    return guarded.solution.let_through(guard.out) != guarded.solution.game.diagrams.false
 
 
 def _begins_never(guard: Guard, waiting: list[str]) -> Finding:
@@ -41,7 +37,7 @@ def _begins_never(guard: Guard, waiting: list[str]) -> Finding:
 
 
 def _nothing(guarded: Guarded, guard: Guard) -> Finding:
-    cause = guarded.because_of(lambda fewer: not _passes(fewer, guard))
+    cause = guarded.because_of(lambda fewer: not fewer.passes(guard.out))
     names = listed([f"`{subject.label}`" for subject in cause.kept])
     if len(cause.kept) > 1:
         why = f"{names} are at odds: what keeps one violates another"

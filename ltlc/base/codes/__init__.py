@@ -142,6 +142,8 @@ CODES: dict[str, Code] = {
     "LTL613": Code("guard-takes-back", "A guard lets commands through and takes them back", NOTE),
     "LTL614": Code("short-for-guard", "A time bound is shorter than the lead of a guard", WARNING),
     "LTL615": Code("watched-only", "No guard keeps the property", NOTE),
+    "LTL616": Code("uncontrollable", "No controller can keep the properties"),
+    "LTL617": Code("controllable", "Nothing is found that keeps a controller from keeping the properties", NOTE),
     "LTL690": Code("not-decided", "A question about the specification was not decided", NOTE),
     "LTL691": Code("idle-suppression", "A comment suppresses nothing", NOTE),
     "LTL701": Code("translation-exceeded", "The budget is too small to build the monitor"),
