@@ -146,7 +146,10 @@ decl x /odom nav_msgs/Odometry.pose.pose.position.x
 
 CONTROLLED: dict[str, tuple[str, set[str]]] = {
     "where the robot is": ("p: always x <= 10 or speed > 5", {CONTROLLABLE}),
-    "where the robot is, and a limit": ("p: always (x <= 10 or speed > 5)\nq: always (x > 9 implies speed < 1)", {UNCONTROLLABLE}),
+    "where the robot is, and a limit": (
+        "p: always (x <= 10 or speed > 5)\nq: always (x > 9 implies speed < 1)",
+        {UNCONTROLLABLE},
+    ),
     "slow in time": ("p: always (near implies eventually speed <= 0 within 100 ms)", {CONTROLLABLE}),
     "both within a time, with one message each": (
         "p: always (near implies eventually speed > 1 within 100 ms)\n"
@@ -159,7 +162,10 @@ CONTROLLED: dict[str, tuple[str, set[str]]] = {
         {CONTROLLABLE, UNCONTROLLABLE},
     ),
     "a goal of the world's": ("p: always (eventually near or speed > 1)", {CONTROLLABLE}),
-    "a goal, some time after a message": ("p: always (new near implies eventually speed > 1)", {CONTROLLABLE, NOT_DECIDED}),
+    "a goal, some time after a message": (
+        "p: always (new near implies eventually speed > 1)",
+        {CONTROLLABLE, NOT_DECIDED},
+    ),
     "nothing to command": ("p: always (near implies eventually x > 1)", set()),
 }
 

@@ -65,11 +65,12 @@ def ask_of_obligations(study: Study) -> Iterator[Finding]:
     """
     if not study.controls:
         return
-    owed = [s for s in study.subjects if s.is_contingent and not study.languages.is_closed(study.words[s.number])]
+    own = [s for s in game_of(study, controllers(study.controls)).kept if s.is_contingent]
+    owed = [subject for subject in own if not study.languages.is_closed(study.words[subject.number])]
     for subject in owed:
         if not _is_plain(subject):
             yield _not_decided(study, subject)
-    cause = [subject for subject in study.subjects if subject.is_contingent and _is_plain(subject)]
+    cause = [subject for subject in own if _is_plain(subject)]
     if any(subject in owed for subject in cause) and not _can_fulfil(study, cause):
         for subject in sorted(cause, key=owed.__contains__):
             fewer = [each for each in cause if each is not subject]
@@ -79,8 +80,8 @@ def ask_of_obligations(study: Study) -> Iterator[Finding]:
 
 
 def _is_plain(subject: Subject) -> bool:
-    """Whether neither time, nor the past, nor ids decide a property."""
-    return not (subject.is_timed or subject.specification.slicing)
+    """Whether neither time nor the past decides a property."""
+    return not subject.is_timed
 
 
 def _can_fulfil(study: Study, subjects: Sequence[Subject]) -> bool:
