@@ -7,17 +7,19 @@ from collections.abc import Iterator
 from ltlc.analysis.findings import Finding
 from ltlc.analysis.subjects import Study, Subject
 from ltlc.analysis.time_bounds import time_bounds
+from ltlc.analysis.wording import part_at
 from ltlc.semantics.durations import duration_text
+from ltlc.semantics.properties import Within
 from ltlc.specification.arenas import is_in_game
 
 
 def ask(study: Study, subject: Subject) -> Iterator[Finding]:
-    """A warning for each bound under `_lead_`: the guard leaves the controller no time of its own."""
+    """A warning for each deadline under `_lead_`: the guard leaves the controller no time of its own."""
     specification, of = study.specification, subject.specification
     if of.is_assumed or not specification.guards or not is_in_game(of, specification.guards):
         return
     for bound in time_bounds(of.property):
-        if bound.duration < specification.lead:
+        if bound.duration < specification.lead and isinstance(part_at(of.property, bound.path), Within):
             lead = duration_text(specification.lead)
             yield Finding(
                 "LTL614",
