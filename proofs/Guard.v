@@ -175,3 +175,6 @@ Section Game.
       destruct (M3 f) as (e & z & S1 & S2). apply (IH z S2). exact (proj1 (acts_lead HC x d f e z A S1)).
   Qed.
 End Game.
+
+Arguments rests {state fallback some}. Arguments answers {state fallback some}. Arguments acts {state fallback some}.
+Arguments answered {state fallback some}.

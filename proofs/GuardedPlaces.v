@@ -28,10 +28,10 @@ Record part := {
 (** After a fallback a condition holds or not, or as another did before; or nothing is known. *)
 Inductive source := Is (b : bool) | As (c : nat) | Any.
 
-(** The first [owned] topics are the guard's own. [read_by]: the topics that each condition reads, if it changes only with
-    messages on them (None: it may change at any instant). A fallback has its topic. *)
+(** The first [owned] topics are the guard's own. [read_by]: the topics that each condition reads; it changes with messages
+    on them only, unless it is [loose]: then it may at any instant. A fallback has its topic. *)
 Record setting := {
-  owned : nat; topics : nat; read_by : list (option (list nat)); fallbacks : list (nat * list source);
+  owned : nat; topics : nat; read_by : list (list nat); loose : list bool; fallbacks : list (nat * list source);
   assumed : diagram nat; parts : list part
 }.
 
@@ -89,8 +89,7 @@ Section Setting.
     | NewsOf ts => if existsb (Nat.eqb a) (news (certified_by P)) then NewsOf ts else Own
     | Own => Own
     end.
-  Definition reads_topic (t c : nat) : bool :=
-    match nth c (read_by S) (Some []) with Some ts => existsb (Nat.eqb t) ts | None => true end.
+  Definition reads_topic (t c : nat) : bool := existsb (Nat.eqb t) (nth c (read_by S) []).
   (** A property takes a step at each nanosecond, and at each message on a topic that it reads. *)
   Definition hears (P : part) (e : option nat) : bool :=
     match e with
@@ -168,12 +167,11 @@ Section Setting.
     end.
 
   (** What becomes of the conditions: as time goes on, at a message with any content, after a fallback. *)
-  Definition is_loose (c : nat) : bool := match nth c (read_by S) (Some []) with None => true | _ => false end.
-  Definition hold : nat -> source := fun c => if is_loose c then Any else As c.
-  Definition heard (t : nat) : nat -> source := fun c => if reads_topic t c then Any else As c.
+  Definition hold : nat -> source := fun c => if nth c (loose S) false then Any else As c.
+  Definition heard (t : nat) : nat -> source := fun c => if nth c (loose S) false || reads_topic t c then Any else As c.
   Definition topic_of (f : nat) : nat := fst (nth f (fallbacks S) (0, [])).
   Definition sent (f : nat) : nat -> source := fun c =>
-    if is_loose c then Any else
+    if nth c (loose S) false then Any else
     if reads_topic (topic_of f) c then nth c (snd (nth f (fallbacks S) (0, []))) Any else As c.
   Definition does (s : nat -> source) (l l' : letter) : Prop :=
     forall c, match s c with Is b => l' c = b | As c' => l' c = l c' | Any => True end.
