@@ -492,10 +492,6 @@ Section Check.
   Qed.
 End Check.
 
-(** A property of a guard, by its certificate. *)
-Definition part_for (C : certificate) (rs : list role) (h : waiting) (kept : bool) : part :=
-  {| certified_by := C; watched := trackers C; roles := rs; waits := h; is_kept := kept |}.
-
 (** Where the certificates and the region are accepted: no prefix of what leaves the guard violates a property. *)
 Theorem accepted_guard : forall S spots n C rs h kept depth work,
   check_guard S spots = true -> nth_error (parts S) n = Some (part_for C rs h kept) ->
@@ -506,5 +502,5 @@ Theorem accepted_guard : forall S spots n C rs h kept depth work,
   exists s, continues C (at_step ls) (length ls) s /\ holds_for_ever C s.
 Proof.
   intros S spots n C rs h kept depth work HG HP HC HE x m HX j Hj ls HN HS.
-  exact (guarded_not_violated S _ n _ HP eq_refl depth work HC HE _ (check_guard_sound S spots HG) x m HX j Hj HN HS).
+  exact (guarded_not_violated S _ n _ HP eq_refl depth work HC _ (check_guard_sound S spots HG) HE x m HX j Hj HN HS).
 Qed.

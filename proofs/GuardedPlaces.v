@@ -25,6 +25,10 @@ Record part := {
   certified_by : certificate; watched : list tracker_of; roles : list role; waits : waiting; is_kept : bool
 }.
 
+(** A property of a guard, by its certificate. *)
+Definition part_for (C : certificate) (rs : list role) (h : waiting) (kept : bool) : part :=
+  {| certified_by := C; watched := trackers C; roles := rs; waits := h; is_kept := kept |}.
+
 (** After a fallback a condition holds or not, or as another did before; or nothing is known. *)
 Inductive source := Is (b : bool) | As (c : nat) | Any.
 
@@ -242,8 +246,7 @@ Section Setting.
     Lemma reaches_more : forall ls more m q, m <= length ls -> reaches M (at_step ls) m q ->
       reaches M (at_step (ls ++ more)) m q.
     Proof.
-      intros ls more m q Hm H. induction H as [|m q t q' H IH HT HL]; [constructor|].
-      econstructor; [apply IH; lia | exact HT|]. unfold at_step. rewrite app_nth1 by lia. exact HL.
+      intros ls more m q Hm. apply reaches_same. intros k a Hk. unfold at_step. now rewrite app_nth1 by lia.
     Qed.
     Lemma begins_more : forall ls more path m, m <= length ls -> begins C (at_step ls) path m ->
       begins C (at_step (ls ++ more)) path m.
@@ -315,34 +318,58 @@ Section Setting.
 
     Variables (depth work : nat).
     Hypothesis HC : check depth work C = true.
-    Hypothesis HE : exact C = true.
     Variable R : region state_of nat some_clocks.
     Hypothesis HR : is_closed R.
 
-    (** Of what leaves the guard, no prefix violates the property: if a run goes on from it at all, one satisfies it. *)
-    Theorem guarded_not_violated : forall x m, is_guarded R x m -> forall j, j <= m ->
+    Lemma satisfied_stays : forall s j q, reaches M s j q -> nth_error (verdicts M) q = Some Satisfied ->
+      forall i, exists q', reaches M s (i + j) q' /\ nth_error (verdicts M) q' = Some Satisfied.
+    Proof.
+      intros s j q HQ HV i. destruct (accepted depth work C HC) as (_ & HA & _).
+      induction i as [|i (r & IH1 & IH2)]; [eauto|]. destruct (HA r Satisfied IH2) as (v & t & V1 & V2 & V3).
+      fold M in V1. rewrite IH2 in V1. injection V1 as <-. destruct V3 as (r' & -> & V3). exists r'. split; auto.
+      econstructor; eauto. constructor.
+    Qed.
+
+    Lemma guarded_follows : forall x m, is_guarded R x m -> forall j, j <= m ->
+      follows_letters (where_is (x j)) (has_read x j) /\ where_is (x j) <> Lost.
+    Proof.
+      intros x m HG j Hj. destruct (guarded_steps _ _ _ _ _ _ _ _ _ x m HG) as [HB HS]. split.
+      - apply has_read_follows; auto. intros k Hk. apply HS. lia.
+      - destruct (guarded_well _ _ _ _ _ _ _ _ _ _ _ _ _ bad_for_ever HR x m HG) as [_ HX]. intros HL.
+        apply (HX j Hj). unfold bad. unfold where_is in HL. rewrite <- HL. apply nth_In.
+        destruct (le_lt_dec (length (wheres (x j))) n) as [HN|HN]; auto.
+        rewrite nth_overflow in HL by exact HN. discriminate.
+    Qed.
+
+    (** After every prefix of what leaves the guard, the monitor shows another verdict than 'violated'. *)
+    Theorem guarded_verdict : forall x m, is_guarded R x m -> forall j, j <= m ->
+      let ls := has_read x j in ls <> [] ->
+      exists q v, reaches M (at_step ls) (length ls) q /\ nth_error (verdicts M) q = Some v /\ v <> Violated.
+    Proof.
+      intros x m HG j Hj ls HN. destruct (guarded_follows x m HG j Hj) as [HF HL]. fold ls in HF.
+      destruct (where_is (x j)) as [|q k| |]; try contradiction.
+      - destruct HF as (_ & HR' & v & HV & N1 & _). eauto.
+      - destruct HF as (i & q & HI & (path & _ & HR') & HV).
+        destruct (satisfied_stays _ _ _ HR' HV (length ls - i)) as (q' & Q1 & Q2).
+        replace (length ls - i + i) with (length ls) in Q1 by lia. exists q', Satisfied. repeat split; auto; discriminate.
+    Qed.
+
+    (** So none violates the property: if a word goes on from it at all, one satisfies it. *)
+    Theorem guarded_not_violated : exact C = true -> forall x m, is_guarded R x m -> forall j, j <= m ->
       let ls := has_read x j in ls <> [] ->
       (exists s, continues C (at_step ls) (length ls) s) ->
       exists s, continues C (at_step ls) (length ls) s /\ holds_for_ever C s.
     Proof.
-      intros x m HG j Hj ls HN (s0 & H0).
-      destruct (guarded_steps _ _ _ _ _ _ _ _ _ x m HG) as [HB HS].
-      destruct (guarded_well _ _ _ _ _ _ _ _ _ _ _ _ _ bad_for_ever HR x m HG) as [_ HW'].
-      specialize (HW' j Hj).
-      pose proof (has_read_follows x j HB (fun k Hk => HS k (Nat.lt_le_trans _ _ _ Hk Hj))) as HF. fold ls in HF.
-      destruct (where_is (x j)) as [|q k| |] eqn:EW.
-      - contradiction.
-      - destruct HF as ((path & HB' & _) & HR' & v & HV & N1 & N2).
-        destruct (check_exactly depth work C HC HE _ path (length ls) HB') as (q' & v' & Q1 & Q2 & Q3 & Q4).
+      intros HE x m HG j Hj ls HN (s0 & H0). destruct (guarded_follows x m HG j Hj) as [HF HL]. fold ls in HF.
+      destruct (where_is (x j)) as [|q k| |]; try contradiction.
+      - destruct HF as ((path & HB & _) & HR' & v & HV & N1 & N2).
+        destruct (check_exactly depth work C HC HE _ path (length ls) HB) as (q' & v' & Q1 & Q2 & Q3 & Q4).
         rewrite (reaches_unique M _ _ _ _ HR' Q1) in HV. unfold M in HV. rewrite HV in Q2. injection Q2 as <-.
         destruct v; try contradiction; now destruct (Q4 Q3).
-      - destruct HF as (i & q & HI & (path & HB' & HR') & HV).
-        destruct (check_sound depth work C HC _ path i HB') as (q' & v' & Q1 & Q2 & Q3).
+      - destruct HF as (i & q & HI & (path & HB & HR') & HV).
+        destruct (check_sound depth work C HC _ path i HB) as (q' & v' & Q1 & Q2 & Q3).
         rewrite (reaches_unique M _ _ _ _ HR' Q1) in HV. unfold M in HV. rewrite HV in Q2. injection Q2 as <-.
         exists s0. split; auto. apply (Q3 s0). destruct H0 as [H1 H2]. split; auto. intros k Hk. apply H2. lia.
-      - exfalso. apply HW'. unfold bad. unfold where_is in EW. rewrite <- EW. apply nth_In.
-        destruct (le_lt_dec (length (wheres (x j))) n) as [HL|HL]; auto.
-        rewrite nth_overflow in EW by exact HL. discriminate.
     Qed.
   End One.
 End Setting.
