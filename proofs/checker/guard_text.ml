@@ -1,4 +1,4 @@
-(* Reads guards with their regions: the same lines, and the same limits, as ltlc/semantics/region_reader.py. *)
+(* Reads guards with their regions; docs/assurance.md has the lines. *)
 open Kernel
 open Words
 
