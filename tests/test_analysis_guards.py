@@ -122,6 +122,12 @@ AS_WRITTEN: dict[str, tuple[str, set[str]]] = {
         "p: always (speed > min(scan) implies eventually speed <= min(scan) within 200 ms)",
         {TAKES_BACK},
     ),
+    "a heartbeat": ("else stop\np: always age(speed) <= 100 ms", set()),
+    "what counts": ("else stop\np: never once new speed 4 times within 10 s", {PASSES_NOTHING}),
+    "a value at an opening": (
+        "else stop\np: after_until held, not held, always (not (new speed) or speed <= @{speed, opening})",
+        set(),
+    ),
     "two properties at odds": (
         "else stop\np: always (min(scan) < 0.5 implies eventually speed <= 0.2 within 100 ms)\n"
         "q: never (new speed and held)",
@@ -177,6 +183,22 @@ def test_whether_a_controller_can_keep_properties_is_answered(name: str) -> None
     study = replace(study_of(specification, EPISODE, Budget()), controls=("/cmd_vel",))
     found = [*uncontrollable.ask(study), *uncontrollable.ask_of_obligations(study)]
     assert {finding.code for finding in found} == expected
+
+
+def test_guards_that_share_a_property_are_one_game() -> None:
+    """One closes while the other is open: whoever sends may break it, so both have to know."""
+    text = (
+        "guard /a_raw to /a else off\nguard /b_raw to /b else off\nguard /c_raw to /c\nmessage off {}\n"
+        "decl a /a std_msgs/Bool.data\ndecl b /b std_msgs/Bool.data\ndecl c /c std_msgs/Bool.data\n"
+        "p: never (a and b)\nq: never (new c and c)\n"
+    )
+    _, arenas = loaded(text)
+    assert [arena.outs for arena in arenas] == [("/a", "/b"), ("/c",)]
+    solution = solve(arenas[0])
+    assert all(solution.game.exists(solution.let_through(out)) for out in ("/a", "/b"))
+    letters = solution.game.diagrams.conjunction(solution.game.atom("a"), solution.game.atom("b"))
+    both = solution.game.diagrams.conjunction(solution.let_through("/a"), letters)
+    assert both == solution.game.diagrams.false
 
 
 def test_an_emergency_stop_that_was_released_before_the_first_command_is_not_forgotten() -> None:

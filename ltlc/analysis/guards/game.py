@@ -137,7 +137,8 @@ class Game:
             for state in self.diagrams.values(row):
                 here = self.diagrams.combine(lambda holds, to, state=state: holds and to == state, letters, row)
                 if here != self.diagrams.false:
-                    own = _own_step(part, state, move, forgets=topic is not None and topic not in self.arena.outs)
+                    forgets = place.reset.is_first or (topic is not None and topic not in self.arena.outs)
+                    own = _own_step(part, state, move, forgets=forgets)
                     found[own] = self.diagrams.disjunction(found.get(own, self.diagrams.false), here)
         self._own[key] = found
         return found
@@ -172,6 +173,13 @@ class Game:
         """The letters after which every letter that a message on `topic` can bring, or time, is `good`."""
         changed = self.arena.loose if topic is None else {a for a, of in self.arena.read.items() if topic in of}
         return self._before({a: None if a in changed | self.arena.loose else a for a in self.atoms}, good)
+
+    def after_message(self, topic: str, letters: Diagram) -> Diagram:
+        """What may be held after a message on `topic`, if `letters` were before."""
+        for level, atom in enumerate(self.atoms):
+            if topic in self.arena.read[atom] or atom in self.arena.loose:
+                letters = self.any_of(self.diagrams.given({level: holds}, letters) for holds in (False, True))
+        return letters
 
     def before_fallback(self, fallback: Sending, good: Diagram) -> Diagram:
         """The letters after which sending `fallback` is `good`, whatever the atoms are of which that is not known."""
@@ -219,7 +227,7 @@ def _is_fresh(tracker: Tracker, before: State, case: Case) -> bool:
 
 
 def _own_step(part: Part, state: int, move: _Move, *, forgets: bool) -> _Own:
-    """After a message of the world it does not matter which clocks run anew."""
+    """Where a property begins, and after a message of the world, it does not matter which clocks run anew."""
     at = standing(part, state, move.target)
     if isinstance(at, Outcome):
         return _Own(at, move.passing)

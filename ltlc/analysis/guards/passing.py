@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 
@@ -22,6 +22,7 @@ from ltlc.semantics.durations import duration_text
 from ltlc.semantics.words import Letter
 from ltlc.specification import evaluation
 from ltlc.specification.arenas import Property, arena_of, conditions_held, is_in_game, together
+from ltlc.specification.atoms import Atom
 from ltlc.specification.guards import Guard
 from ltlc.specification.specification import topics_of
 
@@ -96,11 +97,8 @@ def of_commands(game: Game, letters: Diagram, out: str) -> Diagram:
 
 def harmless(solution: Solution, out: str) -> Iterator[tuple[Step, Diagram]]:
     """The steps by commands on `out`, from where the guards may rest, that violate nothing by themselves."""
-    game = solution.game
-    for joint in solution.visited:
-        for step, letters in game.steps(joint, out).items():
-            if Outcome.WAITING not in step.joint.standings and game.arena.outcome(step.joint) is None:
-                yield step, game.diagrams.conjunction(letters, game.possible)
+    outcome = solution.game.arena.outcome
+    return ((step, letters) for step, letters in solution.commands(out) if outcome(step.joint) is None)
 
 
 def held_back(solution: Solution, out: str) -> Diagram:
@@ -127,8 +125,13 @@ def in_words(guarded: Guarded, letters: Diagram) -> str:
     atoms = conditions_held(guarded.guards, (subject.specification for subject in guarded.subjects))
     sorts = [answers for answers, holds in game.diagrams.paths(letters) if holds]
     sort = min(sorts, key=len)
-    words = [atom_text(atoms[game.atoms[level]], answer) for level, answer in sort.items()]
+    words = [_condition(game.atoms[level], atoms, holds=answer) for level, answer in sort.items()]
     return f"{'for example ' if len(sorts) > 1 else ''}where {' and '.join(words) or 'anything holds'}"
+
+
+def _condition(name: str, atoms: Mapping[str, Atom], *, holds: bool) -> str:
+    """A condition in words; a count has its name."""
+    return atom_text(atoms[name], holds) if name in atoms else f"`{name}` {'holds' if holds else 'does not hold'}"
 
 
 def example(guarded: Guarded, first: Letter, turns: Sequence[Turn], caption: str) -> Example | None:

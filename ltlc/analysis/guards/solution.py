@@ -6,7 +6,7 @@ order of clocks tell (Coq: `necessary`).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import field
 from functools import cached_property
 
@@ -107,33 +107,47 @@ class Solution:
         return self if rests == self.rests else Solution(self.game, rests, self)
 
     @cached_property
-    def visited(self) -> Sequence[Joint]:
-        """The joint places that guards which keep to the region can come to, where they may send.
+    def visited(self) -> Mapping[Joint, Diagram]:
+        """The joint places to which guards that keep to the region can come, and the letters that lead there.
 
         Until all properties have begun, nothing but fallbacks leaves them.
         """
-        arena, found = self.game.arena, {self.game.arena.start: None}
-        sends = {sending.out for sending in arena.fallbacks}
+        game, arena, found = self.game, self.game.arena, {self.game.arena.start: self.game.possible}
         for joint in (queue := list(found)):
+            if arena.outcome(joint) is not None:
+                continue
             for topic in (None, *arena.others, *(() if joint.sent is None else arena.outs)):
-                for step in self.game.steps(joint, topic):
-                    is_sent = topic in arena.outs
-                    may = topic in sends or Outcome.WAITING not in step.joint.standings
-                    good = self.sent_well(step) if is_sent else self.answered(step.joint)
-                    if step.joint not in found and (may or not is_sent) and self.game.exists(good):
-                        found[step.joint] = None
-                        queue.append(step.joint)
-        return [j for j in found if j.sent is not None and arena.outcome(j) is None]
+                for step, letters in game.steps(joint, topic).items():
+                    good = game.diagrams.conjunction(letters, self._comes_to(step, topic))
+                    if game.exists(good):
+                        if step.joint not in found:
+                            queue.append(step.joint)
+                        found[step.joint] = game.any_of((found.get(step.joint, game.diagrams.false), good))
+        return found
+
+    def _comes_to(self, step: Step, topic: str | None) -> Diagram:
+        """The letters at which guards let a step happen."""
+        arena = self.game.arena
+        if topic not in arena.outs:
+            return self.answered(step.joint)
+        has_fallback = any(sending.out == topic for sending in arena.fallbacks)
+        is_possible = has_fallback or Outcome.WAITING not in step.joint.standings
+        return self.sent_well(step) if is_possible else self.game.diagrams.false
+
+    def commands(self, out: str) -> Iterator[tuple[Step, Diagram]]:
+        """The steps by commands on the topic `out`, from where the guards may rest once all properties have begun."""
+        game = self.game
+        for joint, letters in self.visited.items():
+            if joint.sent is not None and game.arena.outcome(joint) is None:
+                before = game.after_message(out, game.diagrams.conjunction(letters, self.resting(joint)))
+                for step, led in game.steps(joint, out).items():
+                    if Outcome.WAITING not in step.joint.standings:
+                        yield step, game.all_of((before, led, game.possible))
 
     def let_through(self, out: str) -> Diagram:
         """The letters after some message on the topic `out` that is let through, wherever the guards rested before."""
-        game, found = self.game, self.game.diagrams.false
-        for joint in self.visited:
-            for step, letters in game.steps(joint, out).items():
-                if Outcome.WAITING not in step.joint.standings:
-                    passed = game.diagrams.conjunction(letters, self.sent_well(step))
-                    found = game.diagrams.disjunction(found, passed)
-        return game.diagrams.conjunction(game.possible, found)
+        d = self.game.diagrams
+        return self.game.any_of(d.conjunction(letters, self.sent_well(step)) for step, letters in self.commands(out))
 
     def region(self) -> Region:
         """As data, for checkers and for what runs."""

@@ -9,6 +9,7 @@ from ltlc.analysis.guards.passing import Guarded, example, games, shortest_play
 from ltlc.analysis.subjects import Study
 from ltlc.analysis.wording import listed
 from ltlc.base.diagnostics import Label
+from ltlc.semantics.arenas import Outcome
 from ltlc.specification.guards import Guard
 
 
@@ -18,11 +19,18 @@ def ask(study: Study) -> Iterator[Finding]:
         for guard in guarded.guards:
             if guarded.passes(guard.out):
                 continue
-            waiting = [p.label for p in guarded.solution.game.arena.parts if guard.out in p.waits and p.history]
+            waiting = _waiting(guarded)
             if waiting and not guard.fallbacks:
                 yield _begins_never(guard, waiting)
             else:
                 yield _nothing(guarded, guard)
+
+
+def _waiting(guarded: Guarded) -> list[str]:
+    """The properties that never begin."""
+    arena, visited = guarded.solution.game.arena, guarded.solution.visited
+    begun = {k for joint in visited for k, at in enumerate(joint.standings) if at is not Outcome.WAITING}
+    return [part.label for k, part in enumerate(arena.parts) if k not in begun]
 
 
 def _begins_never(guard: Guard, waiting: list[str]) -> Finding:
@@ -30,7 +38,8 @@ def _begins_never(guard: Guard, waiting: list[str]) -> Finding:
     return Finding(
         "LTL611",
         guard.span,
-        f"nothing can be the first message on `{guard.out}`: {names} looks back at an earlier one",
+        f"nothing can be the first message on `{guard.out}`: {names} {'begins' if len(waiting) == 1 else 'begin'} only "
+        "after that",
         label="without a fallback, it never begins",
         help="add a fallback, which may leave first: `… else stop`",
     )
@@ -39,7 +48,10 @@ def _begins_never(guard: Guard, waiting: list[str]) -> Finding:
 def _nothing(guarded: Guarded, guard: Guard) -> Finding:
     cause = guarded.because_of(lambda fewer: not fewer.passes(guard.out))
     names = listed([f"`{subject.label}`" for subject in cause.kept])
-    if len(cause.kept) > 1:
+    counting = [f"`{subject.label}`" for subject in cause.kept if subject.counts]
+    if counting:
+        why = f"a guard does not know how often something has occurred, and {listed(counting)} counts"
+    elif len(cause.kept) > 1:
         why = f"{names} are at odds: what keeps one violates another"
     else:
         why = f"whatever is sent, {names} can be violated"

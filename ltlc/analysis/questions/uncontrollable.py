@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from ltlc.analysis.errors import NotDecidedError
 from ltlc.analysis.findings import Finding
 from ltlc.analysis.groups import reads_of
 from ltlc.analysis.guards.controls import controllers
@@ -22,6 +23,9 @@ def ask(study: Study) -> Iterator[Finding]:
     game = game_of(study, controllers(study.controls), any_command=True)
     if not game.kept:
         return
+    counting = next((subject for subject in game.kept if subject.counts), None)
+    if counting is not None:
+        raise NotDecidedError(f"`{counting.label}` counts")
     if _is_possible(game):
         yield _possible(study, game.kept)
     else:
