@@ -431,6 +431,13 @@ def test_options_that_cannot_be_are_refused_with_what_could_be(options: dict[str
         ltlc.run(SLOW, [(0, {"speed": 1})], **options)
 
 
+def test_a_check_answers_whether_a_controller_can_keep_the_properties() -> None:
+    text = "decl v /cmd_vel Twist.linear.x\np: always v <= 1\n"
+    assert [each.code for each in ltlc.check(text, controls=["/cmd_vel"]).diagnostics] == ["LTL617"]
+    with pytest.raises(ltlc.UnusableInput, match="did you mean `/cmd_vel`"):
+        ltlc.check(text, controls=["/cmd_vl"])
+
+
 def test_a_check_prints_its_findings_and_what_each_property_can_do() -> None:
     told = str(ltlc.check("a: never robot.velocity >= 0\nb: never robot.velocity > 2\n")).splitlines()
     assert told[0].startswith("error[LTL501]")

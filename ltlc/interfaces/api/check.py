@@ -10,7 +10,9 @@ from typing import Any
 from ltlc.analysis.examine import Examined, examine
 from ltlc.analysis.subjects import Subject
 from ltlc.base.diagnostics import Diagnostic, Severity
+from ltlc.base.errors import UnusableInput
 from ltlc.base.limits import Budget
+from ltlc.base.nearest import did_you_mean
 from ltlc.base.provenance import provenance
 from ltlc.base.render import full
 from ltlc.base.render import json as render_json
@@ -18,6 +20,7 @@ from ltlc.base.source import Source, Span
 from ltlc.dataclass import dataclass
 from ltlc.interfaces.api.prepare import Text, encoding_of, folders, read
 from ltlc.specification.requirements import Requirement
+from ltlc.specification.specification import topics
 
 SECONDS = 30.0
 """The default limits of all analyses together."""
@@ -132,11 +135,22 @@ def check_of(examined: Examined, read: Source | Diagnostic) -> Check:
     return Check(tuple(examined.diagnostics), properties, () if isinstance(read, Diagnostic) else (read,))
 
 
+def unread_topic(examined: Examined, controls: Sequence[str]) -> str:
+    """That no property reads one of the topics `controls`, in words; empty if each is read, or nothing could be."""
+    read = {topic for subject in examined.subjects for topic in topics(subject.specification)}
+    unread = next((topic for topic in controls if topic not in read), None)
+    if unread is None or examined.specification is None:
+        return ""
+    hint = did_you_mean(unread, read)
+    return f"no property reads `{unread}`{f'; {hint}' if hint else ''}"
+
+
 def check(
     specification: Text,
     *,
     encoding: str = "episode",
     pedantic: bool = False,
+    controls: Sequence[str] = (),
     message_paths: Sequence[str | PathLike[str]] = (),
     budget: Budget | None = None,
 ) -> Check:
@@ -157,8 +171,14 @@ def check(
       = help: did you mean `velocity`?
 
     A `str` is the text of a specification, a `pathlib.Path` a file. If `pedantic`, also what is opinion rather than
-    fault is said. `budget` is what all analyses together may use. Nothing is raised for what is wrong with the text or
-    the file, which is what is asked for; UnusableInput for an encoding that is not known, and SpotMissing.
+    fault is said. With the topics `controls`, also whether a controller that sends on them can keep the properties.
+    `budget` is what all analyses together may use. Nothing is raised for what is wrong with the text or the file, which
+    is what is asked for; UnusableInput for an encoding that is not known and a topic that no property reads, and
+    SpotMissing.
     """
     paths, budget_, source = folders(message_paths), budget or Budget(SECONDS), read(specification)
-    return check_of(examine(source, paths, encoding_of(encoding), budget_, pedantic=pedantic), source)
+    topics_ = tuple(dict.fromkeys([controls] if isinstance(controls, str) else controls))
+    examined = examine(source, paths, encoding_of(encoding), budget_, pedantic=pedantic, controls=topics_)
+    if unread := unread_topic(examined, topics_):
+        raise UnusableInput((), unread)
+    return check_of(examined, source)

@@ -14,16 +14,14 @@ from typing import TYPE_CHECKING
 from ltlc.automata import Budget, SpotMissing
 from ltlc.base.codes import diagnostic
 from ltlc.base.diagnostics import Diagnostic, Severity
-from ltlc.base.nearest import did_you_mean
 from ltlc.base.render import concise
 from ltlc.frontend.language import STDIN, read_source
-from ltlc.interfaces.api.check import Check, check_of
+from ltlc.interfaces.api.check import Check, check_of, unread_topic
 from ltlc.interfaces.commands import arguments
 from ltlc.interfaces.commands.common import FINDING, OK, UNUSABLE, examine, failure, report, unusable
 from ltlc.interfaces.commands.fix import NotFixedError, fix_source, show_difference
 from ltlc.interfaces.commands.sources import found_in
 from ltlc.interfaces.commands.watching import add_watch, watched
-from ltlc.specification.specification import topics
 
 if TYPE_CHECKING:
     from ltlc.analysis.examine import Examined
@@ -125,17 +123,9 @@ def _check(path: Path, options: argparse.Namespace, ids: dict[str, str]) -> tupl
         controls=tuple(dict.fromkeys(options.controls)),
         recordings=options.recording,
     )
-    _check_topics(path, examined, options.controls)
+    if unread := unread_topic(examined, options.controls):
+        raise UnreadTopicError(f"{path}: {unread}")
     return check_of(_traced(_compared(examined, options), ids), source), fixes
-
-
-def _check_topics(path: Path, examined: Examined, controls: Sequence[str]) -> None:
-    """Raises UnreadTopicError."""
-    read = {topic for subject in examined.subjects for topic in topics(subject.specification)}
-    for topic in controls:
-        if examined.specification is not None and topic not in read:
-            hint = did_you_mean(topic, read)
-            raise UnreadTopicError(f"{path}: no property reads `{topic}`{f'; {hint}' if hint else ''}")
 
 
 def _traced(examined: Examined, ids: dict[str, str]) -> Examined:
