@@ -34,6 +34,7 @@ ORDER = {
     "automata": ["automata"],
     "program": ["program"],
     "compiler": ["compiler"],
+    "rules": ["rules"],
     "backends": ["backends"],
     "assurance": ["assurance"],
     "monitoring": [
