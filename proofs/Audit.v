@@ -4,7 +4,8 @@
 Require Import Ltl Properties Anew Past Relativise Encodings Agreement Clocks Registers Stutter Instants Trackers Resets
   ClockSteps Times OneClock
   Lasso Monitor Conditions Judgements Moves Machines Distribute Certificate Infinite InTime Thresholds
-  Program Follows Followed Shown Counts Intervals Held Counting Evidence Instances.
+  Program Follows Followed Shown Counts Intervals Held Counting Evidence Instances Diagrams Guard GuardedPlaces
+  GuardCheck GuardInTime.
 
 (** Nothing. *)
 Definition constructive :=
@@ -19,13 +20,15 @@ Definition constructive :=
    @condition_changes_once, @valuations_on_exact, @valuations_exact, @integers_line, @singles_line, @runs_unique,
    @followed_sound, @stays_between_steps, @each_step, @ring_correct, @presumed_correct, @over_when_the_first_is,
    @interval_means, @interval_means_not, @open_for, @opened, @episode_opened, @past_part_right, @clock_part_right,
-   @next_part_right, @counted_parts_right, @whole_means, @evidence_of_instances, @lines_of_instance, @opened_by_is).
+   @next_part_right, @counted_parts_right, @whole_means, @evidence_of_instances, @lines_of_instance, @opened_by_is,
+   @guarded_well, @never_at_a_loss, @in_time, @few_are_sent, @time_goes_on, @necessary, @guarded_verdict,
+   @check_guard_sound, @check_guard_of_something, @moves_in_time, @started_clocks_wait).
 
 (** At most the law of the excluded middle. *)
 Definition classical :=
   (@encode_correct_infinite, @check_sound, @check_exactly, @certified, @certified_exactly, @certified_exactly_in_time,
    @certified_untimed, @certified_exactly_untimed, @shown, @shown_untimed, @shown_exactly_untimed, @evidence_of_lines,
-   @evidence_untimed).
+   @evidence_untimed, @guarded_not_violated, @guarded_in_time, @accepted_guard).
 
 Print Assumptions constructive.
 Print Assumptions classical.

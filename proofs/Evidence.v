@@ -208,9 +208,6 @@ Proof.
   destruct (nth_error (decisions M) d) as [a|] eqn:E; [|congruence]. econstructor; eauto.
 Qed.
 
-Lemma leads_same : forall M l l' t q, (forall a, l a = l' a) -> leads M l t q -> leads M l' t q.
-Proof. intros M l l' t q H HL. induction HL; [constructor | econstructor; eauto; rewrite <- H; auto]. Qed.
-
 Lemma step_reaches : forall M fuel s n q l q', reaches M s n q -> (forall a, s n a = l a) ->
   step M fuel l q = Some q' ->
   reaches M s (S n) q'.

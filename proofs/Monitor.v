@@ -38,3 +38,13 @@ Proof.
   intros M s n q q' H. revert q'. induction H as [| n q t r _ IH Ht Hl]; intros q' H'; inversion H' as [| ? q2 t2 ? A B C]; subst; auto.
   apply IH in A. subst q2. rewrite Ht in B. injection B as <-. eapply leads_unique; eauto.
 Qed.
+
+(** It reads what atoms are. *)
+Lemma leads_same : forall M l l' t q, (forall a, l a = l' a) -> leads M l t q -> leads M l' t q.
+Proof. intros M l l' t q H. induction 1 as [|d a q HD _ IH]; [constructor|]. econstructor; [exact HD|]. now rewrite <- H. Qed.
+Lemma reaches_same : forall M s s' n q, (forall k a, k < n -> s k a = s' k a) -> reaches M s n q -> reaches M s' n q.
+Proof.
+  intros M s s' n q H HR. induction HR as [|n q t r _ IH HT HL]; [constructor|]. econstructor; [|exact HT|].
+  - apply IH. intros k a Hk. apply H. lia.
+  - apply (leads_same M (s n)); auto.
+Qed.

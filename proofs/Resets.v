@@ -264,6 +264,59 @@ Section Runs.
     induction k as [|k IH]; intros H; apply HX; auto. intros Hk. now apply IH.
   Qed.
 
+  (** What the trackers do at an instant, they may do together. *)
+  Lemma cases_together : forall k, exists l,
+    In (l, cases_at k) (together xs (states (path k)) (fun _ => closed) (is_first (path k))) /\ at_letter l (e k) = true.
+  Proof.
+    intros k. rewrite path_states. apply (together_follows xs []); auto; [intros o [] | apply path_first].
+  Qed.
+  Lemma cases_next : forall k, map next (cases_at k) = states (path (S k)).
+  Proof.
+    intros k. pose proof (cases_fit k) as HF. simpl. clear - HF. induction HF as [|x c ys cs H _ IH]; simpl; auto.
+    destruct H as (_ & _ & -> & _). now rewrite IH.
+  Qed.
+  Lemma passing_takes_time : forall k, existsb (fun p => p) (those_passing xs (states (path k)) (cases_at k)) = true ->
+    exists j, k = S j /\ t j < t k.
+  Proof.
+    intros k. pose proof (cases_fit k) as HF. rewrite path_states. clear - HF.
+    induction HF as [|x c ys cs H _ IH]; simpl; [discriminate|].
+    intros HO. apply orb_true_iff in HO. destruct HO as [HO|HO]; auto. destruct H as (_ & _ & _ & _ & H & _).
+    unfold passes in HO. apply andb_true_iff in HO. destruct HO as [H1 H2]. destruct (passed c) as [n|];
+      [|discriminate].
+    apply Nat.ltb_lt in H2. destruct (H n H1 eq_refl) as (j & E & _ & H3). eauto.
+  Qed.
+  Lemma begun_do_not_pass : forall k, existsb (fun pb => fst pb && snd pb)
+    (combine (those_passing xs (states (path k)) (cases_at k)) (begun (path k))) = false.
+  Proof.
+    intros k. unfold cases_at. rewrite path_states, path_begun.
+    assert (HY : forall ys, (forall y, In y ys -> In y xs) ->
+      existsb (fun pb => fst pb && snd pb)
+        (combine (those_passing ys (map (fun x => before_instant e t began x k) ys)
+                                   (map (fun x => the_case e t began x k) ys))
+                 (map (fun x => begun_before x k) ys)) = false); [|apply HY; auto].
+    induction ys as [|x ys IH]; intros HI; [reflexivity|]. simpl. rewrite IH by (intros y Hy; apply HI; simpl; auto).
+    rewrite orb_false_r. specialize (HI x (or_introl eq_refl)).
+    destruct (the_case_fits e t began Ht dense x k (all_well_formed x HI)) as [_ H1].
+    destruct (passes x (before_instant e t began x k) (the_case e t began x k)) eqn:E; auto. simpl.
+    destruct k as [|j]; auto. destruct (begun_after x j) eqn:EB; auto. exfalso.
+    destruct (begun_now x (all_well_formed x HI) j EB) as (HR & HT & HD).
+    unfold passes in E. apply andb_true_iff in E. destruct E as [_ E]. destruct H1 as (_ & _ & _ & _ & H1 & _).
+    destruct (passed (the_case e t began x (S j))) as [n|]; [|discriminate]. apply Nat.ltb_lt in E.
+    destruct (H1 n HR eq_refl) as (i & Ei & Hn & _). injection Ei as <-. pose proof (dense j).
+    destruct (bounds x) as [|d bs]; [destruct HD|]. cbn [count] in Hn.
+    destruct (Nat.ltb_spec (base e t began x j + d) (t (S j))); lia.
+  Qed.
+  Lemma cases_begun : forall k, have_begun xs (states (path k)) (begun (path k)) (cases_at k) =
+    map (fun x => has_begun x (before_instant e t began x k) (begun_before x k) (the_case e t began x k)) xs.
+  Proof.
+    intros k. rewrite path_states, path_begun. unfold cases_at.
+    assert (HY : forall ys, have_begun ys (map (fun x => before_instant e t began x k) ys)
+      (map (fun x => begun_before x k) ys) (map (fun x => the_case e t began x k) ys) =
+      map (fun x => has_begun x (before_instant e t began x k) (begun_before x k) (the_case e t began x k)) ys);
+      [|apply HY].
+    induction ys as [|x ys IH]; simpl; auto. now rewrite IH.
+  Qed.
+
   Hypothesis not_trivial : is_trivial news xs = false.
 
   (** The move at an instant; it is one at which a letter is held, if time has passed. *)
@@ -271,39 +324,9 @@ Section Runs.
     moves_by news xs (path k) (e k) (path (S k)) m /\ at_letter l (e k) = true /\
     (exists b, fair m = marks xs (cases_at k) ++ [b] /\ (forall j, k = S j -> t j < t k -> b = true)).
   Proof.
-    intros k. pose proof (cases_fit k) as HF.
-    assert (HT : exists l, In (l, cases_at k) (together xs (states (path k)) (fun _ => closed) (is_first (path k))) /\
-        at_letter l (e k) = true).
-    { rewrite path_states. apply (together_follows xs []); auto; [intros o [] | apply path_first]. }
-    destruct HT as (l & A & B). exists l.
-    assert (HG : map next (cases_at k) = states (path (S k))).
-    { simpl. clear - HF. induction HF as [|x c ys cs H _ IH]; simpl; auto. destruct H as (_ & _ & -> & _).
-    now rewrite IH. }
+    intros k. destruct (cases_together k) as (l & A & B). exists l. pose proof (cases_next k) as HG.
     set (pass := those_passing xs (states (path k)) (cases_at k)).
-    assert (HP : existsb (fun p => p) pass = true -> exists j, k = S j /\ t j < t k).
-    { unfold pass. rewrite path_states. clear - HF. induction HF as [|x c ys cs H _ IH]; simpl; [discriminate|].
-      intros HO. apply orb_true_iff in HO. destruct HO as [HO|HO]; auto. destruct H as (_ & _ & _ & _ & H & _).
-      unfold passes in HO. apply andb_true_iff in HO. destruct HO as [H1 H2]. destruct (passed c) as [n|];
-        [|discriminate].
-      apply Nat.ltb_lt in H2. destruct (H n H1 eq_refl) as (j & E & _ & H3). eauto. }
-    assert (HE : existsb (fun pb => fst pb && snd pb) (combine pass (begun (path k))) = false).
-    { unfold pass, cases_at. rewrite path_states, path_begun.
-      assert (HY : forall ys, (forall y, In y ys -> In y xs) ->
-        existsb (fun pb => fst pb && snd pb)
-          (combine (those_passing ys (map (fun x => before_instant e t began x k) ys)
-                                     (map (fun x => the_case e t began x k) ys))
-                   (map (fun x => begun_before x k) ys)) = false); [|apply HY; auto].
-      induction ys as [|x ys IH]; intros HI; [reflexivity|]. simpl. rewrite IH by (intros y Hy; apply HI; simpl; auto).
-      rewrite orb_false_r. specialize (HI x (or_introl eq_refl)).
-      destruct (the_case_fits e t began Ht dense x k (all_well_formed x HI)) as [_ H1].
-      destruct (passes x (before_instant e t began x k) (the_case e t began x k)) eqn:E; auto. simpl.
-      destruct k as [|j]; auto. destruct (begun_after x j) eqn:EB; auto. exfalso.
-      destruct (begun_now x (all_well_formed x HI) j EB) as (HR & HT & HD).
-      unfold passes in E. apply andb_true_iff in E. destruct E as [_ E]. destruct H1 as (_ & _ & _ & _ & H1 & _).
-      destruct (passed (the_case e t began x (S j))) as [n|]; [|discriminate]. apply Nat.ltb_lt in E.
-      destruct (H1 n HR eq_refl) as (i & Ei & Hn & _). injection Ei as <-. pose proof (dense j).
-      destruct (bounds x) as [|d bs]; [destruct HD|]. cbn [count] in Hn.
-      destruct (Nat.ltb_spec (base e t began x j + d) (t (S j))); lia. }
+    pose proof (passing_takes_time k) as HP. pose proof (begun_do_not_pass k) as HE. fold pass in HP, HE.
     unfold moves_by, moves. rewrite not_trivial.
     destruct (at_letter (settled news xs) (e k)) eqn:ES.
     - eexists. split; auto. split; [apply in_flat_map; exists (l, cases_at k); split; [exact A|]; cbn [snd];
@@ -320,13 +343,8 @@ Section Runs.
       eexists. split; auto.
       split; [apply in_flat_map; exists (l, cases_at k); split; [exact A|]; apply in_app_iff; right; cbn [snd];
         fold pass; rewrite HN; left; reflexivity|].
-      + split; [cbn [letters at_letter fst]; now rewrite B, ES|]. cbn [target snd]. rewrite HG, (path_states k),
-        path_begun.
-        cbn [path states]. f_equal. unfold cases_at.
-        assert (HY : forall ys, have_begun ys (map (fun x => before_instant e t began x k) ys)
-          (map (fun x => begun_before x k) ys)
-          (map (fun x => the_case e t began x k) ys) = map (fun x => begun_after x k) ys); [|apply HY].
-        induction ys as [|x ys IH]; simpl; auto. rewrite IH. now rewrite begun_after_eq, ES.
+      + split; [cbn [letters at_letter fst]; now rewrite B, ES|]. cbn [target snd]. rewrite HG, cases_begun.
+        cbn [path states]. f_equal. apply map_ext. intros x. now rewrite begun_after_eq, ES.
       + split; auto. exists false. split; auto. intros j E Hj. exfalso. now apply (HH j).
   Qed.
 

@@ -29,7 +29,8 @@ def found_in(path: Path, pedantic: bool = True) -> list[Diagnostic]:
     """With time enough on the slowest machine: without it, what is found depends on how fast it is."""
     specification, diagnostics = load(path)
     assert specification is not None, [d.message for d in diagnostics]
-    report = analyse(specification, EPISODE, Budget(600.0, 1024), pedantic=pedantic)
+    controls = re.findall(r"^# controls: (.*)$", specification.source.text, re.MULTILINE)
+    report = analyse(specification, EPISODE, Budget(600.0, 1024), pedantic=pedantic, controls=controls)
     return sorted(suppress(specification, [*diagnostics, *report.diagnostics], pedantic=pedantic), key=line)
 
 

@@ -156,3 +156,16 @@ def test_explain_of_what_is_neither_a_file_nor_a_code_is_unusable() -> None:
 def test_explain_of_a_code_that_there_is_not_says_so(capsys: Any) -> None:
     assert main(["explain", "LTL999"]) == 2
     assert "no diagnostic is called LTL999" in capsys.readouterr().err
+
+
+COMMANDED = "decl speed /cmd_vel Twist.linear.x\ndecl x /odom Odometry.pose.pose.position.x\n"
+
+
+def test_what_no_controller_can_keep_is_a_finding(check: Any, capsys: Any) -> None:
+    assert check(f"{COMMANDED}p: always (x <= 10 and speed <= 1)", "--controls", "/cmd_vel") == 1
+    assert "error[LTL616]" in capsys.readouterr().err
+
+
+def test_a_controller_of_what_no_property_reads_is_a_usage_error(check: Any, capsys: Any) -> None:
+    assert check(f"{COMMANDED}p: always speed <= 1", "--controls", "/cmd_vl") == 2
+    assert "did you mean `/cmd_vel`?" in capsys.readouterr().err

@@ -80,7 +80,7 @@ def listings(page: str) -> Iterator[tuple[str, str]]:
     return ((found[1], found[2]) for found in re.finditer(r"^```(\w*)\n(.*?)^```", text, re.DOTALL | re.MULTILINE))
 
 
-@pytest.mark.parametrize("page", ["tutorial", "sentences", "patterns", "matrix"])
+@pytest.mark.parametrize("page", ["tutorial", "sentences", "patterns", "matrix", "guard"])
 def test_specifications_are_shown_in_the_layout_that_all_have(page: str) -> None:
     shown = [listing for language, listing in listings(f"docs/{page}.md") if language == "ltlc"]
     assert shown
@@ -102,7 +102,7 @@ def pattern(line: str) -> str:
     return "(?s:.*)" if line == "…" else re.escape(line).replace("…", ".*") + "\n"
 
 
-@pytest.mark.parametrize("page", ["tutorial", "matrix", "evidence"])
+@pytest.mark.parametrize("page", ["tutorial", "matrix", "evidence", "guard"])
 def test_a_page_prints_what_it_shows(page: str, tmp_path: Path) -> None:
     (tmp_path / "examples").symlink_to(ROOT / "examples")
     for language, listing in listings(f"docs/{page}.md"):

@@ -18,7 +18,7 @@ import pytest
 import ltlc
 from ltlc.base.source import Source
 from ltlc.frontend.syntax import parse as parsing
-from ltlc.frontend.syntax.lexer import KEYWORDS, PREFIXES, Token, next_token
+from ltlc.frontend.syntax.lexer import HEADS, KEYWORDS, PREFIXES, Token, next_token
 
 ROOT = Path(__file__).parents[1]
 EXTENSION = ROOT / "editors" / "vscode"
@@ -32,7 +32,7 @@ pytestmark = pytest.mark.skipif(
 
 OPERATORS = ("==", "!=", "<", "<=", ">", ">=", "+", "-", "*", "/", "@", "=")
 SCOPES = {
-    **dict.fromkeys(KEYWORDS | PREFIXES | {"each", "of", "limit"} | set(OPERATORS), "keyword."),
+    **dict.fromkeys(KEYWORDS | PREFIXES | (HEADS.keys() - {"rate"}) | set(OPERATORS), "keyword."),
     "true": "constant.language.",
     "false": "constant.language.",
     "NUMBER": "constant.numeric.",
@@ -43,9 +43,10 @@ SCOPES = {
     "STRING": "string.quoted.",
     "TOPIC": "string.unquoted.topic.",
     "TYPE": "entity.name.type.",
-    "MESSAGE": "entity.name.type.",
+    "MESSAGE_TYPE": "entity.name.type.",
     "SETTING": "variable.language.setting.",
     "QUANTIFIER": "support.function.",
+    "rate": "support.function.",
     "TEMPLATE": "variable.other.",
 }
 """What each terminal of the grammar is to a theme."""
@@ -112,12 +113,12 @@ def test_every_token_of_every_fixture_has_the_colour_of_what_the_compiler_takes_
 
 def test_comments_and_line_breaks_between_any_two_words_change_no_colour(monkeypatch: pytest.MonkeyPatch) -> None:
     texts = [path.read_text(encoding="utf-8") for path in FIXTURES]
-    broken = [re.sub(r'(?m)"[^"\n]*"|#.*|(?<=\S) (?=\S)', spread, text) for text in texts]
+    broken = [re.sub(r'(?m)"[^"\n]*"|#.*|^guard .*|(?<=\S) (?=\S)', spread, text) for text in texts]
     assert wrongly_coloured(broken, monkeypatch) == []
 
 
 def spread(match: re.Match[str]) -> str:
-    """A blank as a comment and a line break; strings and comments as they are."""
+    """A blank as a comment and a line break; strings, comments and guards, each on a line, as they are."""
     return " # never /odom 3 s\n\n" if match.group() == " " else match.group()
 
 

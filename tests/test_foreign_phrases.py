@@ -308,6 +308,26 @@ def test_a_declaration_in_another_spelling_is_answered(line: str, written: str) 
     assert answer(line)[0] == written
 
 
+GUARDS = [
+    ("guard /c_raw /c else stop", "guard /c_raw to /c else stop"),
+    ("guard /c_raw -> /c", "guard /c_raw to /c"),
+    ("guard /c from /c_raw", "guard /c_raw to /c"),
+    ("guard /c_raw to /c otherwise stop", "guard /c_raw to /c else stop"),
+    ("guard /c_raw to /c, stop", "guard /c_raw to /c else stop"),
+    ("guard /c_raw to /c else stop or crawl", "guard /c_raw to /c else stop, crawl"),
+    ("guard /c_raw to /c else stop crawl", "guard /c_raw to /c else stop, crawl"),
+    ("message stop: {data: 0}", "message stop {data: 0}"),
+    ("message stop = {data: 0}", "message stop {data: 0}"),
+    ("assume that always p", "assume always p"),
+    ("a: assume always p", "assume a: always p"),
+]
+
+
+@pytest.mark.parametrize(("line", "written"), GUARDS)
+def test_a_guard_in_other_words_is_answered(line: str, written: str) -> None:
+    assert answer(line)[0] == written
+
+
 def test_the_page_shows_the_answers() -> None:
     page = (Path(__file__).parents[1] / "docs" / "patterns.md").read_text(encoding="utf-8")
     _, _, table = page.partition("| written | answer |\n|---|---|\n")
@@ -317,7 +337,7 @@ def test_the_page_shows_the_answers() -> None:
 
 
 def test_each_phrase_is_tried_here() -> None:
-    lines = [each[0] for each in SAME] + [each[0] for each in OTHERS]
+    lines = [each[0] for each in SAME] + [each[0] for each in OTHERS] + [each[0] for each in GUARDS]
     lines += [
         "decl w /w a::B.c",
         "decl w /w B c",

@@ -277,6 +277,150 @@ def test_both_checkers_read_every_bound_as_it_is_written(certify: Path, tmp_path
     assert (code, len(lines)) == (0, len(BOUNDS) + 1)
 
 
+GUARDED = """decl speed /cmd_vel Twist.linear.x
+decl scan /scan LaserScan.ranges
+at_once: always (new speed and min(scan) < 0.5 implies speed <= 0.2)
+soon: always (min(scan) < 0.5 implies eventually speed <= 0.2 within 100 ms)
+"""
+GUARD = """
+guard 5 /cmd_vel_raw to /cmd_vel
+lead 10000000
+m0 /cmd_vel
+m1 /scan
+a0 m1 min(scan) < 0.5
+a1 m0 speed <= 0.2
+n0 m0 new speed
+g0 m0 stop a1 true
+u0 keeps 0 begins 1
+u1 keeps 1 begins 1
+d0 a1 then false else true
+assumption true
+k0 read running 0 idle
+k1 read running 0 running 0
+r0 silent waits waits rests true
+r1 0 waits waits rests true
+r2 1 q0 k0.q0 rests true
+r3 1 q0 k1.q1 rests d0
+ahead r3 1.1 g0 d0
+end
+"""
+"""What is near is answered by `stop`, before the clock of `soon` passes its bound."""
+
+
+@pytest.fixture(scope="module")
+def guarded(tmp_path_factory: pytest.TempPathFactory) -> str:
+    """The certificates of GUARDED, and then GUARD."""
+    folder = tmp_path_factory.mktemp("guarded")
+    properties, certificate = folder / "properties.txt", folder / "certificate"
+    properties.write_text(GUARDED, encoding="utf-8")
+    with quick_gate():
+        assert (
+            main(
+                [
+                    "build",
+                    str(properties),
+                    "--target",
+                    "json",
+                    "-o",
+                    str(folder / "out"),
+                    "--certificate",
+                    str(certificate),
+                ]
+            )
+            == 0
+        )
+    text = certificate.read_text(encoding="utf-8")
+    return text.replace("properties 2\n", "properties 2 guards 1\n") + GUARD
+
+
+def test_the_checker_from_coq_certifies_a_guard_with_two_properties_and_a_clock(
+    certify: Path, tmp_path: Path, guarded: str
+) -> None:
+    properties = ["at_once: certified exactly", "soon: certified exactly"]
+    guard = ["guard /cmd_vel_raw to /cmd_vel: certified", "  keeping at_once, soon"]
+    assert coq_answer(certify, tmp_path / "one", guarded) == (0, properties + guard)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "reason"),
+    [
+        ("r3 1 q0 k1.q1 rests d0\nahead r3 1.1 g0 d0\n", "", "r2: no answer to a message on /scan"),
+        ("r2 1 q0 k0.q0", "r2 1 q0 waits", "r3: it may not rest after stop ahead"),
+        ("r1 0 waits waits", "r1 1 waits waits", "r0: no answer to a message on /scan"),
+        ("k0.q0 rests true", "k0.q0 rests d0", "r3: it may not rest after stop ahead"),
+        (
+            "r0 silent waits waits rests true",
+            "r0 silent waits waits rests d0",
+            "it may not rest in r0, where it starts",
+        ),
+        ("r0 silent waits waits rests true", "r0 silent waits waits rests true g0 true", "r0: it may not send here"),
+        ("k1.q1 rests", "k0.q1 rests", "r2: no answer to a message on /scan"),
+        ("k1 read running 0 running 0", "k1 read running 0 running 1", "r2: no answer to a message on /scan"),
+        ("ahead r3 1.1 g0 d0\n", "", "r3: no answer to the passage of time"),
+        ("ahead r3 1.1 g0 d0", "ahead r3 1.0 g0 d0", "r3: no answer to the passage of time"),
+        ("g0 m0 stop a1 true", "g0 m0 stop a1 false", "r3: it may not rest after stop ahead"),
+        ("g0 m0 stop a1 true", "g0 m0 stop a1 a0", "r3: it may not rest after stop ahead"),
+        ("g0 m0 stop a1 true", "g0 m0 stop", "r3: it may not rest after stop ahead"),
+        ("begins 1\nu1", "begins session\nu1", "r0: no answer to a message on /scan"),
+        ("begins 1\nu1", "begins silent\nu1", "r0: no answer to a message on /scan"),
+        ("begins 1\nd0", "begins 2\nd0", "r3: it may not rest after stop ahead"),
+        ("n0 m0 new speed\n", "", "r2: no answer to a message on /scan"),
+        ("a1 m0 speed", "a1 loose m0 speed", "r3: it may not rest after stop ahead"),
+        ("assumption true", "assumption false", "nothing is found that its assumption allows"),
+        ("\nq1 violated q1\nd0 a0", "\nq1 violated q0\nd0 a0", "at_once is not"),
+    ],
+)
+def test_the_checker_from_coq_says_what_is_wrong_with_a_changed_guard(
+    certify: Path, tmp_path: Path, guarded: str, old: str, new: str, reason: str
+) -> None:
+    assert guarded.count(old) == 1
+    code, lines = coq_answer(certify, tmp_path / "one", guarded.replace(old, new))
+    assert (code, lines[2]) == (1, f"guard /cmd_vel_raw to /cmd_vel: not certified: {reason}")
+
+
+def test_a_guard_relies_on_what_it_assumes(certify: Path, tmp_path: Path, guarded: str) -> None:
+    """That what is near has been answered in time is then for others to see to."""
+    text = guarded.replace("u1 keeps", "u1 assumes").replace("ahead r3 1.1 g0 d0\n", "")
+    code, lines = coq_answer(certify, tmp_path / "one", text)
+    assert (code, lines[2:]) == (
+        0,
+        ["guard /cmd_vel_raw to /cmd_vel: certified", "  keeping at_once", "  relying on soon"],
+    )
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "line"),
+    [
+        ("guards 1", "guards 2", None),
+        ("\nend\n", "\n", None),
+        ("m1 /scan", "m2 /scan", "m2 /scan"),
+        ("a1 m0 speed", "a1 m2 speed", "a1 m2 speed <= 0.2"),
+        ("a1 m0 speed <= 0.2", "a1 m0 min(scan) < 0.5", "a1 m0 min(scan) < 0.5"),
+        ("g0 m0", "g0 m1", "g0 m1 stop a1 true"),
+        ("stop a1 true", "stop a1 maybe", "g0 m0 stop a1 maybe"),
+        ("keeps 1 begins", "keeps 2 begins", "u1 keeps 2 begins 1"),
+        ("begins 1\nd0", "begins 1,0\nd0", "u1 keeps 1 begins 1,0"),
+        ("r2 1 q0 k0.q0", "r2 1 q0 q0", "r2 1 q0 q0 rests true"),
+        ("r2 1 q0 k0.q0", "r2 1 q0", "r2 1 q0 rests true"),
+        ("r2 1 q0 k0.q0", "r2 1 k0.q0 k0.q0", "r2 1 k0.q0 k0.q0 rests true"),
+        ("r2 1 q0 k0.q0", "r2 1 q0 k0.q7", "r2 1 q0 k0.q7 rests true"),
+        ("ahead r3 1.1 g0", "ahead r3 1.2 g0", "ahead r3 1.2 g0 d0"),
+        ("ahead r3 1.1 g0", "ahead r3 g0", "ahead r3 g0 d0"),
+        ("ahead r3 1.1 g0", "ahead r4 1.1 g0", "ahead r4 1.1 g0 d0"),
+        ("lead 10000000", "lead soon", "lead soon"),
+        ("k1 read", "x1 read", "x1 read running 0 running 0"),
+    ],
+)
+def test_a_line_that_a_guard_cannot_have_is_named(
+    certify: Path, tmp_path: Path, guarded: str, old: str, new: str, line: str | None
+) -> None:
+    before, found, after = guarded.rpartition(old)
+    assert found
+    text = f"{before}{new}{after}"
+    lines = text.split("\n")
+    assert coq_answer(certify, tmp_path / "one", text) == (2, [f"line {1 + lines.index(line) if line else len(lines)}"])
+
+
 def timed_text(seed: int) -> str:
     """The certificate of a random property with bounds or a past, in an encoding that has a clock for each bound."""
     property_ = Draw(seed).property(depth=1 + seed % 2)

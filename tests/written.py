@@ -20,7 +20,7 @@ TERMINALS = {
     "DURATION": ("5 s", "200ms", "0.5\tmin"),
     "PARAMETER": ("?",),
     "STRING": ('"#1 # b"', '"\\" x"', '""'),
-    "MESSAGE": ("a_msgs/msg/Goal", "b/srv/C"),
+    "MESSAGE_TYPE": ("a_msgs/msg/Goal", "b/srv/C"),
     "FUNCTION": ("abs", "min", "age"),
     "QUANTIFIER": ("any", "count"),
     "WITHIN_FIRST": ("within",),

@@ -103,6 +103,8 @@ def said(text: str) -> Said:
                 called = f"line {line}" if label is None else label.text
                 for suffix, each in _written_out(body):
                     found.properties[called + suffix] = put_in(each, known)
+            case s.Guard() | s.Message():
+                pass  # what is monitored does not depend on them
     return found
 
 

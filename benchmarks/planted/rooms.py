@@ -50,6 +50,7 @@ ROOMS = {
     "semantics": "test_semantics_*.py test_diagrams.py test_runtime_episodes.py test_openings.py",
     "interfaces/serve": "test_serve.py test_serve_browser.py",
     "specification": "test_specification_*.py test_requirements.py test_language_signals.py test_language_margins.py "
+    "test_language_guards.py "
     "test_assurance_gate.py",
     "frontend/starter": "test_commands_new.py",
     "frontend/syntax": "test_syntax_parse.py test_language_files.py test_language_check.py test_language_readings.py",

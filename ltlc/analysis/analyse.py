@@ -72,13 +72,15 @@ def analyse(
     watch: Watch | None = None,
     *,
     pedantic: bool = False,
+    controls: Sequence[str] = (),
 ) -> Report:
     """All findings about `specification`, within `budget` for everything together.
 
-    If `pedantic`, also report matters of opinion. `watch` gets the progress of each stage. Raises SpotMissing.
+    If `pedantic`, also report matters of opinion, and what a controller can do that sends on the topics `controls`, if
+    there are any. `watch` gets the progress of each stage. Raises SpotMissing.
     """
     stages = _Stages(budget, watch)
-    study = replace(_study(specification, encoding, stages), pedantic=pedantic)
+    study = replace(_study(specification, encoding, stages), pedantic=pedantic, controls=tuple(controls))
     findings = [
         *_undecided_letters(study),
         *_without_monitor(study),

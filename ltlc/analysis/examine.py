@@ -49,6 +49,7 @@ def examine(
     watch: Watch | None = None,
     *,
     pedantic: bool = False,
+    controls: Sequence[str] = (),
     recordings: Iterable[Path] = (),
 ) -> Examined:
     """The findings about `source`, or why it could not be read; what authors suppress in the text is omitted.
@@ -60,7 +61,7 @@ def examine(
     specification, diagnostics = load_text(source, message_paths, encoding, recordings)
     if specification is None:
         return Examined(None, unsuppressed(diagnostics))
-    return examine_loaded(specification, diagnostics, encoding, budget, watch, pedantic=pedantic)
+    return examine_loaded(specification, diagnostics, encoding, budget, watch, pedantic=pedantic, controls=controls)
 
 
 def examine_loaded(
@@ -71,8 +72,9 @@ def examine_loaded(
     watch: Watch | None = None,
     *,
     pedantic: bool = False,
+    controls: Sequence[str] = (),
 ) -> Examined:
     """The findings about a `specification`, of which the front end says `diagnostics`. Raises SpotMissing."""
-    found = analyse(specification, encoding, budget, watch, pedantic=pedantic)
+    found = analyse(specification, encoding, budget, watch, pedantic=pedantic, controls=controls)
     told = in_order(suppress(specification, [*diagnostics, *found.diagnostics], pedantic=pedantic))
     return Examined(found.study, told)

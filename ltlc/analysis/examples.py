@@ -75,15 +75,15 @@ def example_of(
     if rows is None:
         return None
     said = tuple(remarks) or ("",) * len(word)
-    shown = telling(word, said, loop)
+    numbers = telling(word, said, loop)
     return Example(
         caption,
         tuple(rows[0]),
-        tuple(tuple(rows[n].values()) for n in shown),
-        tuple(said[n] for n in shown),
-        None if loop is None else sum(n < loop for n in shown),
-        tuple(letter.time for n in shown if isinstance(letter := word[n], Instant)),
-        frozenset(row for row, n in enumerate(shown) if is_held(word[n])),
+        tuple(tuple(rows[n].values()) for n in numbers),
+        tuple(said[n] for n in numbers),
+        None if loop is None else sum(n < loop for n in numbers),
+        tuple(letter.time for n in numbers if isinstance(letter := word[n], Instant)),
+        frozenset(row for row, n in enumerate(numbers) if is_held(word[n])),
     )
 
 
@@ -100,14 +100,24 @@ def telling(word: Word, said: Sequence[object], loop: int | None) -> list[int]:
 
 def values_of(setting: Setting, word: Word, loop: int | None) -> list[dict[str, Any]] | None:
     """What each signal is, for people, at each letter of `word`; None if no numbers for it are found."""
-    rows = None if setting.counts else _rows(setting, word, loop)
+    rows = rows_of(setting, word, loop)
+    return None if rows is None else shown(setting, rows)
+
+
+def shown(setting: Setting, rows: Sequence[Values]) -> list[dict[str, Any]]:
+    """`rows` by the names of the signals, for people."""
     reads = list(dict.fromkeys(value for atom in setting.atoms for value in reads_of(atom.condition)))
     named = list(zip(read_texts(reads), reads, strict=True))
-    return None if rows is None else [{name: _shown(row[value]) for name, value in named} for row in rows]
+    return [{name: _shown(row[value]) for name, value in named} for row in rows]
 
 
-def _rows(setting: Setting, word: Word, loop: int | None) -> list[Values] | None:
-    """Values that give the letters of `word`, held without news where nothing but time comes between two rows."""
+def rows_of(setting: Setting, word: Word, loop: int | None) -> list[Values] | None:
+    """Values that give the letters of `word`, held without news where nothing but time comes between two rows.
+
+    None if no numbers are found.
+    """
+    if setting.counts:
+        return None
     held = list(map(is_held, word))
     names = {atom.name for atom in setting.atoms}
     steps = tuple(letter & names for letter, by_time in zip(word, held, strict=True) if not by_time)

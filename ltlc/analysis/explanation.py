@@ -97,7 +97,9 @@ def _in_words(subject: Subject, class_: str = "", runs: Mapping[Verdict, Example
 
 
 def _stated(specification: PropertySpecification) -> str:
-    """The property as its author wrote it, with the head of an `each`."""
+    """The property as its author wrote it, with the head of an `each`, or as an assumption."""
+    if specification.is_assumed:
+        return f"assume {specification.text}"
     match specification.slicing:
         case Slicing(keys, variable, limit):
             most = "" if limit is None else f" limit {limit}"

@@ -96,6 +96,8 @@ class Subject:
 class Study:
     """A specification with what its analyses share; `pedantic` says that opinions are asked for.
 
+    It is asked what a controller can do that sends on the topics `controls`, if there are any.
+
     `monitors` are those made so far, by their shapes, for later translations of the same properties.
     """
 
@@ -105,6 +107,7 @@ class Study:
     subjects: tuple[Subject, ...]
     monitors: Mapping[Hashable, Monitor]
     pedantic: bool = False
+    controls: tuple[str, ...] = ()
 
     def setting(self, *subjects: Subject) -> Setting:
         """What examples about `subjects` are made with."""

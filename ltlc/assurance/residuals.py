@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
-from ltlc.semantics.diagrams import Diagram, Diagrams
-from ltlc.semantics.ltl import FALSE, TRUE, And, Atom, Formula, Next, Not, Or, Truth, Until
+from ltlc.semantics.diagrams import Diagram, Diagrams, formulas
+from ltlc.semantics.ltl import And, Atom, Formula, Next, Not, Or, Truth, Until
 from ltlc.semantics.progression import NON_EMPTY
 from ltlc.semantics.reset_machine import Clocks, Move, ResetMachine
 from ltlc.semantics.words import Letter
@@ -36,7 +36,7 @@ class Residuals:
         self._later: dict[int, Diagram] = {}
         self._now: dict[int, Diagram] = {}
         self._progressed: dict[Diagram, Diagram] = {}
-        self._formulas: dict[Diagram, Formula] = {self.diagrams.true: TRUE, self.diagrams.false: FALSE}
+        self.formula = formulas(self.obligation, self.diagrams)
         self._moves: dict[Clocks, list[Move[Diagram]]] = {}
         self.possible = self.now(assumption)
 
@@ -147,26 +147,6 @@ class Residuals:
     def _narrowed(self, letters: Diagram, predicate: Formula) -> Diagram | None:
         found = self.diagrams.conjunction(letters, self.now(predicate))
         return None if found == self.diagrams.false else found
-
-    def formula(self, residual: Diagram) -> Formula:
-        """`residual` as a formula; equal parts are the same object."""
-        if residual not in self._formulas:
-            level, low, high = self.diagrams.split(residual)
-            asked = self.obligation(level)
-            yes, no = self.formula(high), self.formula(low)
-            if_so = asked if yes == TRUE else And(asked, yes)
-            if_not = Not(asked) if no == TRUE else And(Not(asked), no)
-            if no == FALSE:
-                self._formulas[residual] = if_so
-            elif yes == FALSE:
-                self._formulas[residual] = if_not
-            elif yes == TRUE:
-                self._formulas[residual] = Or(asked, no)
-            elif no == TRUE:
-                self._formulas[residual] = Or(Not(asked), yes)
-            else:
-                self._formulas[residual] = Or(if_so, if_not)
-        return self._formulas[residual]
 
     def cubes(self, residual: Diagram) -> Iterator[Cube]:
         """The conjunctions of obligations whose disjunction is `residual`."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 from enum import Enum
 from typing import Any
@@ -14,7 +14,7 @@ from ltlc.automata.spot_translation import FAST, Session
 from ltlc.dataclass import dataclass
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.diagrams import Diagram
-from ltlc.semantics.ltl import And, Formula, Not, Or, conjunction, globally
+from ltlc.semantics.ltl import And, Atom, Formula, Not, Or, conjunction, globally
 from ltlc.semantics.monitor import Monitor
 from ltlc.semantics.timed_atoms import TimedAtom, atoms_within, timed_atoms
 from ltlc.semantics.verdicts import Verdict
@@ -73,6 +73,21 @@ def is_satisfiable(formula: Formula, alphabet: Alphabet) -> bool:
 def implies(left: Formula, right: Formula, alphabet: Alphabet) -> bool:
     """Whether every infinite run over the letters of `alphabet` that satisfies `left` satisfies `right`."""
     return not is_satisfiable(And(left, Not(right)), alphabet)
+
+
+def can_be_kept(formula: Formula, outputs: Collection[str], alphabet: Alphabet) -> bool:
+    """Whether someone who sets the atoms in `outputs` can make sure that `formula`, without timed atoms, holds.
+
+    The world sets the other atoms, at each step first; both keep to the letters of `alphabet`. Decided by a game
+    (Pnueli and Rosner 1989; Spot's `ltl_to_game`).
+    """
+    exists = read_by(formula, alphabet)
+    of_world = exists.restricted_to(atom for atom in exists.atoms if atom not in outputs)
+    kept = Or(Not(globally(of_world.as_formula())), And(formula, globally(exists.as_formula())))
+    session = Session(letters_of(kept, _own_alphabet(kept)))
+    names = [name for name in exists.atoms if name in outputs]
+    written = [str(session.to_spot(Atom(name), finite=False)) for name in names]
+    return bool(spot.solve_game(spot.ltl_to_game(session.to_spot(kept, finite=False), written)))
 
 
 def temporal_class(formula: Formula, alphabet: Alphabet) -> TemporalClass:

@@ -11,7 +11,7 @@ from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Seq
 from functools import cache
 from typing import Any
 
-from ltlc.semantics.ltl import And, Atom, Formula, Not, Or, Truth
+from ltlc.semantics.ltl import FALSE, TRUE, And, Atom, Formula, Not, Or, Truth
 
 Diagram = int
 """A diagram is known by its number in its `Diagrams`."""
@@ -249,3 +249,25 @@ def rows(
         return diagrams.choose(asked(question), then, otherwise)
 
     return row
+
+
+def formulas(asked: Callable[[int], Formula], diagrams: Diagrams) -> Callable[[Diagram], Formula]:
+    """What diagrams of truth values say, as formulas in which a level is what is `asked`; equal parts are shared."""
+
+    @cache
+    def formula(diagram: Diagram) -> Formula:
+        if diagrams.is_terminal(diagram):
+            return TRUE if diagrams.value(diagram) else FALSE
+        level, low, high = diagrams.split(diagram)
+        here, yes, no = asked(level), formula(high), formula(low)
+        if_so = here if yes == TRUE else And(here, yes)
+        if_not = Not(here) if no == TRUE else And(Not(here), no)
+        if no == FALSE:
+            return if_so
+        if yes == FALSE:
+            return if_not
+        if yes == TRUE:
+            return Or(here, no)
+        return Or(Not(here), yes) if no == TRUE else Or(if_so, if_not)
+
+    return formula

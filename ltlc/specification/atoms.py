@@ -16,7 +16,7 @@ from typing import Any
 
 from ltlc.base.source import Span
 from ltlc.dataclass import dataclass
-from ltlc.specification.expressions import Condition, Count, Expression, Opening, operands, subexpressions
+from ltlc.specification.expressions import Condition, Count, Expression, Opening, Read, operands, subexpressions
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,13 +39,18 @@ def placed(part: Any, scope: int, label: str) -> Any:
 
 def with_openings(part: Any, change: Callable[[Opening], Expression]) -> Any:
     """A condition, or a part of one, with what `change` makes of the values at an opening in it."""
-    if isinstance(part, Opening):
+    return with_reads(part, lambda read: change(read) if isinstance(read, Opening) else read)
+
+
+def with_reads(part: Any, change: Callable[[Read], Expression]) -> Any:
+    """A condition, or a part of one, with what `change` makes of everything that is read in it."""
+    if isinstance(part, Read):
         return change(part)
     if isinstance(part, tuple):
-        return tuple(with_openings(each, change) for each in part)
+        return tuple(with_reads(each, change) for each in part)
     if not isinstance(part, Expression | Condition):
         return part
-    return type(part)(*(with_openings(getattr(part, each.name), change) for each in fields(part)))
+    return type(part)(*(with_reads(getattr(part, each.name), change) for each in fields(part)))
 
 
 def nested(condition: Condition) -> Iterator[Condition]:

@@ -40,6 +40,7 @@ from ltlc.specification.expressions import (
     openings,
     operands,
 )
+from ltlc.specification.guards import LEAD, Guard
 from ltlc.specification.requirements import Requirement
 from ltlc.specification.text import read_texts, text
 
@@ -132,7 +133,8 @@ class PropertySpecification:
     without its label and with white space folded. `atoms` are in the order of first use, which is that of `alphabet`.
     `spans` has the place of every part of `property`, by its path; of an association, the place of its use. Of a copy
     that `forall` makes, `names` has those that its variables stand for, and `written` what stands in their places.
-    One of `each` has a `slicing`; everything else is about a single slice or instance.
+    One of `each` has a `slicing`; everything else is about a single slice or instance. A guard relies on one that
+    `is_assumed`, and does not keep it.
     """
 
     label: str
@@ -147,6 +149,7 @@ class PropertySpecification:
     written: Mapping[Span, str] = field(default_factory=dict)
     requirement: Requirement | None = None
     slicing: Slicing | Instances | None = None
+    is_assumed: bool = False
 
     def whole(self) -> Span:
         """The place of all of it, the attributes in front of it included."""
@@ -225,6 +228,7 @@ class DefinitionKind(Enum):
     MODEL = "model"
     OBJECT = "object"
     ZONE = "zone"
+    MESSAGE = "message"
     ASSOCIATION = "association"
 
 
@@ -240,13 +244,22 @@ class Definition:
 
 @dataclass(frozen=True)
 class Specification:
-    """A whole file. `rate` is in Hz and `timeout` in ns, None where the file does not set them."""
+    """A whole file. `rate` is in Hz and `timeout` in ns, None where the file does not set them.
+
+    So long before a deadline its `guards` act: `lead`.
+    """
 
     source: Source
     properties: tuple[PropertySpecification, ...]
     definitions: tuple[Definition, ...]
     rate: float | None = None
     timeout: Nanoseconds | None = None
+    guards: tuple[Guard, ...] = ()
+    lead: Nanoseconds = LEAD
+
+    def kept_by(self, guard: Guard) -> tuple[PropertySpecification, ...]:
+        """The properties that `guard` keeps: those that read what it lets through."""
+        return tuple(each for each in self.properties if not each.is_assumed and guard.out in topics(each))
 
 
 def parts(node: Property | Formula) -> tuple[Property | Formula, ...]:

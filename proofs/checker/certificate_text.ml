@@ -401,8 +401,10 @@ let read_item d kind line words =
       Program_text.read d.program kind word rest d.atoms.length d.states.length clocks predicate
   | _ -> fail "unexpected line"
 
+(* The certificates in a text; and of each guard that comes after them its lines, with their numbers, for guard_text.ml. *)
 let parse text =
   let entries = ref [] and current = ref None and last = ref 0 and header = ref false and expected = ref None in
+  let guards = ref [] and guard = ref [] in
   let item line words =
     let word = Stdlib.List.hd words in
     let kind = match part word with Some (c, _) -> String.make 1 c | None -> word in
@@ -426,11 +428,16 @@ let parse text =
       if not !header then (if text = "ltlc-certificate 1" then header := true else fail "not a certificate")
       else
         match !expected, words with
-        | None, [ "properties"; n ] -> expected := Some (number n)
+        | None, [ "properties"; n ] -> expected := Some (number n, 0)
+        | None, [ "properties"; n; "guards"; g ] -> let n = number n in expected := Some (n, number g)
         | None, _ -> fail "the second line says 'properties' and how many"
-        | Some _, _ -> item text words
+        | Some _, word :: _ when !guard <> [] || (!current = None && word = "guard") ->
+            guard := (index + 1, text) :: !guard;
+            if text = "end" then begin guards := Stdlib.List.rev !guard :: !guards; guard := [] end
+        | Some _, _ -> if !guards <> [] then fail "properties come before guards"; item text words
     end in
   Stdlib.List.iteri line (String.split_on_char '\n' text);
-  if !current <> None || !expected = None then fail "the text ends in the middle of a certificate";
-  if Some (Stdlib.List.length !entries) <> !expected then fail "the number of properties is another";
-  Stdlib.List.rev !entries
+  if !current <> None || !guard <> [] || !expected = None then fail "the text ends in the middle of a certificate";
+  if Some (Stdlib.List.length !entries, Stdlib.List.length !guards) <> !expected then
+    fail "the number of properties or guards is another";
+  Stdlib.List.rev !entries, Stdlib.List.rev !guards

@@ -1,6 +1,6 @@
-(* certify FILE...        check certificates, and the programs in them: exit 0 if all are certified exactly, if only over
-                          the words of their reset machines, and each program follows its monitor, 1 if not, 2 if a
-                          file is not a certificate
+(* certify FILE...        check certificates, and the programs and guards in them: exit 0 if all are certified exactly, if
+                          only over the words of their reset machines, each program follows its monitor, and each
+                          guard is certified, 1 if not, 2 if a file is not a certificate
    certify --table        evaluate the properties and formulas on standard input: see table below *)
 open Kernel
 
@@ -43,13 +43,69 @@ let check_entry (entry : Certificate_text.entry) =
     else if words_are_runs c then "certified exactly" else "certified, exactly over the words of its reset machine" in
   Printf.printf "%s: %s\n" entry.label answer;
   if c.assumption <> PTruth then Printf.printf "  assuming %s\n" (fst (in_words entry.atoms c.assumption));
-  match entry.followed with
-  | Some program when certified -> check_program c program && is_exact
-  | _ -> is_exact
+  let is_well = match entry.followed with
+    | Some program when certified -> check_program c program && is_exact
+    | _ -> is_exact in
+  (if is_exact then `Exactly else if certified then `Certified else `No), is_well
+
+(* What is wrong with a region, of what the proved checker asks of it. *)
+let wrong_with (g : Guard_text.t) =
+  let s = g.setting and spots = g.spots in
+  let in_spot r spot =
+    let when_not b reason = if b then [] else [ Printf.sprintf "r%d: %s" r reason ] in
+    let fallback f = Stdlib.List.nth g.fallbacks f in
+    let message t = when_not (message_is_answered s spots spot t) ("no answer to a message on " ^ Stdlib.List.nth g.topics t) in
+    let answer f = when_not (answer_leads s spots spot f) ("it may not rest after " ^ fallback f) in
+    let act (((_, f), _) as a) = when_not (act_leads s spots spot a) ("it may not rest after " ^ fallback f ^ " ahead") in
+    let from n count = Stdlib.List.init count (fun i -> n + i) in
+    when_not (may_send_in s spot) "it may not send here"
+    @ Stdlib.List.concat_map message (from s.owned (s.topics - s.owned))
+    @ when_not (time_is_answered s spots spot) "no answer to the passage of time"
+    @ Stdlib.List.concat_map answer (from 0 (Stdlib.List.length spot.answering))
+    @ Stdlib.List.concat_map act spot.ahead in
+  if not (something_is_possible s) then [ "nothing is found that its assumption allows" ]
+  else if not (starts_at_rest s spots) then [ "it may not rest in r0, where it starts" ]
+  else Stdlib.List.concat (Stdlib.List.mapi in_spot spots)
+
+exception Too_much
+
+(* The check allocates so many words at most. *)
+let largest_check = 2e10
+let limited check =
+  let most = Gc.minor_words () +. largest_check in
+  let alarm = Gc.create_alarm (fun () -> if Gc.minor_words () > most then raise Too_much) in
+  Fun.protect ~finally:(fun () -> Gc.delete_alarm alarm) check
+
+(* A guard, with what has been found of each property. *)
+let check_guard_entry (entries : Certificate_text.entry array) certified (g : Guard_text.t) =
+  let enough (s : Guard_text.subject) = certified.(s.entry) = `Exactly || (certified.(s.entry) = `Certified && not s.keeps) in
+  let name (s : Guard_text.subject) = entries.(s.entry).label in
+  let answer =
+    match Stdlib.List.find_opt (fun s -> not (enough s)) g.subjects with
+    | Some s -> "not certified: " ^ name s ^ " is not"
+    | None ->
+        match limited (fun () -> check_guard g.setting g.spots) with
+        | true -> "certified"
+        | false -> (match wrong_with g with w :: _ -> "not certified: " ^ w | [] -> "not certified")
+        | exception Too_much -> "not certified: the region is too large to be checked" in
+  Printf.printf "guard %s: %s\n" g.label answer;
+  let listed keeps word =
+    match Stdlib.List.filter (fun (s : Guard_text.subject) -> s.keeps = keeps) g.subjects with
+    | [] -> ()
+    | some -> Printf.printf "  %s %s\n" word (String.concat ", " (Stdlib.List.map name some)) in
+  listed true "keeping"; listed false "relying on";
+  answer = "certified"
 
 let check_file name =
-  match Certificate_text.parse (read_file name) with
-  | entries -> if Stdlib.List.for_all Fun.id (Stdlib.List.map check_entry entries) then 0 else 1
+  let parsed () =
+    let entries, guards = Certificate_text.parse (read_file name) in
+    let entries = Array.of_list entries in
+    entries, Stdlib.List.map (Guard_text.read entries) guards in
+  match parsed () with
+  | entries, guards ->
+      let found = Array.map check_entry entries in
+      let guarded = Stdlib.List.map (check_guard_entry entries (Array.map fst found)) guards in
+      if Array.for_all snd found && Stdlib.List.for_all Fun.id guarded then 0 else 1
   | exception Words.Unreadable (line, message) -> Printf.printf "%s: line %d: %s\n" name line message; 2
   | exception Sys_error message -> prerr_endline message; 2
 

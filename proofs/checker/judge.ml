@@ -294,7 +294,7 @@ let judge_document s entries digest =
 
 let judge_file certificates evidence =
   let text = read_file certificates in
-  let entries = Certificate_text.parse text in
+  let entries, _ = Certificate_text.parse text in
   let labels = Stdlib.List.map (fun (e : Certificate_text.entry) -> e.label) entries in
   if Stdlib.List.length (Stdlib.List.sort_uniq compare labels) < Stdlib.List.length labels then
     raise (Sys_error (certificates ^ ": two certificates have the same label"));

@@ -23,7 +23,7 @@ let number s = if is_number s then int_of_string s else fail "not a number"
 let duration s = if has_digits 18 s then int_of_string s else fail "not a duration in nanoseconds"
 
 let part s =
-  if String.length s >= 2 && String.contains "atfpkqdcsbo" s.[0] && is_number (String.sub s 1 (String.length s - 1))
+  if String.length s >= 2 && String.contains "atfpkqdcsbomngur" s.[0] && is_number (String.sub s 1 (String.length s - 1))
   then Some (s.[0], int_of_string (String.sub s 1 (String.length s - 1)))
   else None
 

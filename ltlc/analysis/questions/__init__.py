@@ -11,6 +11,9 @@ from ltlc.analysis.questions import (
     events_overlap,
     exact_equality,
     excluded_deadline,
+    guard_holds_back,
+    guard_passes_nothing,
+    guard_takes_back,
     held_trigger,
     idle_bound,
     inconsistent,
@@ -23,12 +26,15 @@ from ltlc.analysis.questions import (
     redundant,
     same_signal,
     short_bound,
+    short_for_guard,
+    uncontrollable,
     unreachable_count,
     unsatisfiable,
     vacuous_part,
     valid,
     waits_for_others,
     waits_for_topic,
+    watched_only,
 )
 from ltlc.analysis.subjects import Study, Subject
 from ltlc.dataclass import dataclass
@@ -57,6 +63,8 @@ OF_ONE = (
     Question("it keeps ids or messages forever", never_forgotten.ask),
     Question("a deadline waits for a topic", waits_for_topic.ask),
     Question("a part of it waits for the others", waits_for_others.ask),
+    Question("a bound on time is too short for a guard", short_for_guard.ask),
+    Question("a guard keeps it", watched_only.ask),
 )
 """About a property by itself."""
 
@@ -99,5 +107,10 @@ class FileQuestion:
 OF_FILES = (
     FileQuestion("two names are one signal", same_signal.ask),
     FileQuestion("measured numbers are compared exactly", exact_equality.ask),
+    FileQuestion("a guard lets nothing through", guard_passes_nothing.ask),
+    FileQuestion("a guard never lets some commands through", guard_holds_back.ask),
+    FileQuestion("a guard takes commands back", guard_takes_back.ask),
+    FileQuestion("a controller can prevent violations", uncontrollable.ask),
+    FileQuestion("a controller can fulfil what is owed", uncontrollable.ask_of_obligations),
 )
 """About the whole file."""

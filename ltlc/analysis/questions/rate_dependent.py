@@ -10,6 +10,7 @@ from ltlc.analysis.subjects import Study, Subject
 from ltlc.analysis.wording import listed
 from ltlc.base.diagnostics import Fix, Help, Label
 from ltlc.base.source import Span
+from ltlc.specification.arenas import is_in_game
 from ltlc.specification.atoms import Atom
 from ltlc.specification.expressions import (
     Comparison,
@@ -31,10 +32,13 @@ from ltlc.specification.text import as_written, text
 def ask(study: Study, subject: Subject) -> Iterator[Finding]:
     """Without `_rate_`, a warning for history, and for equality between topics that arrive one after the other.
 
-    None for what compares a sample with the one before, and nothing else: that needs no clock. Measured numbers need
+    None for what compares a sample with the one before, and nothing else: that needs no clock; and for what a guard
+    keeps, of its own run. Measured numbers need
     a margin first, which `exact-equality` reports.
     """
-    if study.specification.rate is not None:
+    specification = study.specification
+    is_kept = bool(specification.guards) and is_in_game(subject.specification, specification.guards)
+    if specification.rate is not None or is_kept:
         return
     atoms = [atom for atom in subject.specification.atoms if not is_change(atom.condition)]
     historical = [(atom, past) for atom in atoms for past in _history_in(atom.condition)]

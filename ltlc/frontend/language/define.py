@@ -25,12 +25,13 @@ from ltlc.frontend.syntax.lexer import skip_blank
 from ltlc.frontend.syntax.parse import MAX_DEPTH
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.specification.expressions import Field, Signal, ValueType
+from ltlc.specification.guards import LEAD
 from ltlc.specification.specification import DefinitionKind
 
 MOST_RATE = 1e6
 """Hz; beyond, ticks of today cannot be distinguished in doubles."""
 
-SETTINGS = ("_rate_", "_timeout_", "_margin_", "_simulator_")
+SETTINGS = ("_rate_", "_timeout_", "_margin_", "_lead_", "_simulator_")
 
 MAX_SIZE = 10_000
 """How many nodes a property may have when its associations are written out."""
@@ -48,6 +49,7 @@ class Settings:
     rate: float | None = None
     timeout: Nanoseconds | None = None
     margin: float = 0.0
+    lead: Nanoseconds = LEAD
 
 
 def settings(checker: Checker, tree: syntax.SyntaxTree) -> Settings:
@@ -80,7 +82,10 @@ def _set(checker: Checker, command: syntax.Setting, found: Settings) -> None:
         _set_simulator(checker, command)
         return
     if name == "_timeout_":
-        found.timeout = _timeout(checker, command)
+        found.timeout = _duration(checker, command, "60 s")
+        return
+    if name == "_lead_":
+        found.lead = _duration(checker, command, "10 ms") or LEAD
         return
     number = literal(checker, command.value)
     if number is None:
@@ -95,8 +100,8 @@ def _set(checker: Checker, command: syntax.Setting, found: Settings) -> None:
     setattr(found, name.strip("_"), number)
 
 
-def _timeout(checker: Checker, command: syntax.Setting) -> Nanoseconds | None:
-    """A duration, or a number of seconds."""
+def _duration(checker: Checker, command: syntax.Setting, example: str) -> Nanoseconds | None:
+    """A duration, or a number of seconds; None if an error was reported."""
     node = command.value
     if isinstance(node, syntax.DurationLiteral):
         duration = nanoseconds(checker, node)
@@ -106,7 +111,8 @@ def _timeout(checker: Checker, command: syntax.Setting) -> Nanoseconds | None:
     if duration is None or 0 < duration < LONGEST:
         return duration
     message = (
-        "`_timeout_` must be a duration such as `60 s`, or a number of seconds, greater than 0 and less than a century"
+        f"`{command.name.text}` must be a duration such as `{example}`, or a number of seconds, "
+        "greater than 0 and less than a century"
     )
     checker.report("LTL402", node.span, message)
     return None
@@ -174,6 +180,8 @@ class Definitions:
             case syntax.ObjectAtPlace():
                 if self._is_new(command.name, DefinitionKind.OBJECT):
                     self.names.objects[command.name.text] = self._place(command)
+            case syntax.Message():
+                self._is_new(command.name, DefinitionKind.MESSAGE)
             case syntax.Zone():
                 if self._is_new(command.name, DefinitionKind.ZONE):
                     found = zone(self.checker, command)
@@ -211,6 +219,7 @@ class Definitions:
             return None
         if topic is None:
             return None
+        self.names.topics.setdefault(topic, (found.message, command.type.span))
         field = Field(topic, found.message, found.path, found.numbers)
         if found.kind == "message":
             return Message(Signal(name, ValueType.BOOLEAN, field), command.type.span)

@@ -60,7 +60,8 @@ class Simulator:
 class Names:
     """The names defined so far, and those that some part of the file defines, for 'used before definition'.
 
-    `undeclared` has the uses of objects that nothing declares, `ids` the keys of the variables of `each`.
+    `undeclared` has the uses of objects that nothing declares, `ids` the keys of the variables of `each`. For each of
+    the `topics` with declared values, there is the full name of its type, and where it is declared first.
     """
 
     everywhere: dict[str, Span] = field(default_factory=dict)
@@ -72,6 +73,7 @@ class Names:
     simulator: Simulator = field(default_factory=Simulator)
     undeclared: dict[str, list[Span]] = field(default_factory=dict)
     ids: dict[str, tuple[Signal, Span]] = field(default_factory=dict)
+    topics: dict[str, tuple[str, Span]] = field(default_factory=dict)
 
     def visible(self) -> list[str]:
         """All names that can be used."""

@@ -30,6 +30,9 @@ from ltlc.specification.specification import fields
 _NO_NAMES = {
     "nan": "omit this comparison: a sample that is NaN makes no step, and reports state how many there were",
     "each": "write `each NAME of KEY: P` for each value of KEY, or `each new SIGNAL: P` from each message on",
+    "guard": "the form is `guard TOPIC to TOPIC else NAME`",
+    "message": "the form is `message NAME {FIELD.FIELD: VALUE}`",
+    "assume": "the form is `assume PROPERTY`",
 }
 """Words that mean something in other languages, or lack what belongs to them here."""
 

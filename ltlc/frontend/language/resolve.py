@@ -14,6 +14,7 @@ from ltlc.frontend.language.clocks import has_clocks
 from ltlc.frontend.language.define import Definitions, settings
 from ltlc.frontend.language.each import head_of, inside, instances_of, of_instance, speaks_of_its_ids
 from ltlc.frontend.language.forall import of_copy, words, written_out
+from ltlc.frontend.language.guards import guards, read_as_commands
 from ltlc.frontend.language.misread import report_similar, second_on_line
 from ltlc.frontend.language.names import Checker, Names
 from ltlc.frontend.language.parameters import NAME as PARAMETER
@@ -25,16 +26,17 @@ from ltlc.semantics import properties
 from ltlc.semantics.encodings import Encoding
 from ltlc.semantics.timed_atoms import News, atoms_within, counts_of
 from ltlc.specification.alphabet import alphabet
-from ltlc.specification.specification import Definition, PropertySpecification, Specification
+from ltlc.specification.guards import Guard
+from ltlc.specification.specification import Definition, DefinitionKind, PropertySpecification, Specification
 
-GLOBAL = (syntax.Model, syntax.ObjectFromTopic, syntax.ObjectAtPlace, syntax.Zone)
+GLOBAL = (syntax.Model, syntax.ObjectFromTopic, syntax.ObjectAtPlace, syntax.Zone, syntax.Message)
 """Commands that hold for the whole file, wherever they stand, as settings do."""
 
 MAX_FINDINGS = 200
 """After so many findings the rest of a file is not looked at."""
 
 _WORD = re.compile(r"\w+")
-_LOST_DEFINITION = re.compile(r"\b(?:decl|model|object)\s+(\w+)|\b(\w+)\s*=(?!=)")
+_LOST_DEFINITION = re.compile(r"\b(?:decl|model|object|message)\s+(\w+)|\b(\w+)\s*=(?!=)")
 _COMMENT = re.compile(r'("(?:[^"\\\n]|\\.)*")|#[^\n]*')
 
 
@@ -62,6 +64,7 @@ def sound_part(checker: Checker, tree: syntax.SyntaxTree) -> Specification:
     definitions = Definitions(checker, scopes)
     stated = _Stated(checker, definitions, scopes)
     used = _used(tree)
+    found: tuple[Guard, ...] = ()
     for command in tree.commands:
         if isinstance(command, GLOBAL):
             definitions.enter(command)
@@ -74,6 +77,8 @@ def sound_part(checker: Checker, tree: syntax.SyntaxTree) -> Specification:
         if isinstance(command, syntax.PropertyCommand):
             stated.add(command)
     else:
+        found = guards(checker, tree, stated.found)
+        used.update(read_as_commands(checker, found, used))
         _report_unused(checker, used)
         report_similar(checker, tree)
         if states_none and tree.lost is None:
@@ -83,7 +88,7 @@ def sound_part(checker: Checker, tree: syntax.SyntaxTree) -> Specification:
     listed = tuple(
         Definition(kind, word.text, word.span, word.text in used) for kind, word in checker.names.definitions
     )
-    return Specification(checker.source, tuple(stated.found), listed, chosen.rate, chosen.timeout)
+    return Specification(checker.source, tuple(stated.found), listed, chosen.rate, chosen.timeout, found, chosen.lead)
 
 
 def _defined(tree: syntax.SyntaxTree) -> dict[str, Span]:
@@ -127,7 +132,8 @@ class _Stated:
         found = _property(self.checker, self.definitions, self.scopes, command, self.labels.of(command))
         self.checker.diagnostics[before:] = [of_copy(d, command.names) for d in self.checker.diagnostics[before:]]
         self._is_sound = found is not None
-        self.found += [] if found is None else [replace(found, requirement=requirement)]
+        if found is not None:
+            self.found.append(replace(found, requirement=requirement, is_assumed=command.is_assumed))
 
 
 class _Labels:
@@ -242,8 +248,9 @@ def _used(tree: syntax.SyntaxTree) -> set[str]:
     """The names that properties use, through associations as well."""
     inside = {c.name.text: _words(c.value) for c in tree.commands if isinstance(c, syntax.Association)}
     queue = [w for c in tree.commands if isinstance(c, syntax.PropertyCommand | syntax.Setting) for w in _words(c)]
-    queue += [w for c in tree.commands if isinstance(c, syntax.ObjectAtPlace) for w in _words(c)]
+    queue += [w for c in tree.commands if isinstance(c, syntax.ObjectAtPlace | syntax.Message) for w in _words(c)]
     used: set[str] = set(_WORD.findall(tree.lost or ""))
+    used.update(name.text for c in tree.commands if isinstance(c, syntax.Guard) for name in c.fallbacks)
     while queue:
         word = queue.pop()
         if word not in used:
@@ -252,8 +259,13 @@ def _used(tree: syntax.SyntaxTree) -> set[str]:
     return used
 
 
+_USERS = {DefinitionKind.MESSAGE: "guard"}
+"""What uses the names that properties do not."""
+
+
 def _report_unused(checker: Checker, used: set[str]) -> None:
     for kind, word in checker.names.definitions:
-        if word.text not in used:
-            message = f"the {kind.value} `{word.text}` is not used by any property"
+        is_lost = kind is DefinitionKind.MESSAGE and "guard" in used  # a word of what could not be parsed
+        if word.text not in used and not is_lost:
+            message = f"the {kind.value} `{word.text}` is not used by any {_USERS.get(kind, 'property')}"
             checker.diagnostics.append(diagnostic("LTL104", checker.source, word.span, message))

@@ -73,7 +73,8 @@ def _component(message: Message) -> Numbers | None:
     return None if only is None or only.is_list else PRIMITIVES.get(only.base)
 
 
-def _numbers(type_: FieldType, types: MessageTypes) -> Numbers:
+def numbers_of_type(type_: FieldType, types: MessageTypes) -> Numbers:
+    """The numbers that a value of `type_`, or each number in it, can be."""
     structure = types.messages.get(type_.base)
     return PRIMITIVES.get(type_.base) or (structure and _component(structure)) or DOUBLES
 
@@ -136,7 +137,7 @@ def type_path(source: Source, word: syntax.Word, types: MessageTypes) -> TypePat
     for part in parts[1:]:
         if Each() in path and current.length == 0:
             return _nested(source, part, current)
-        step = _index(source, part, current) if part.text.startswith("[") else _field(source, part, current, types)
+        step = _index(source, part, current) if part.text.startswith("[") else field_of(source, part, current, types)
         if isinstance(step, Diagnostic):
             return step
         path.append(step[0])
@@ -154,7 +155,7 @@ def type_path(source: Source, word: syntax.Word, types: MessageTypes) -> TypePat
         return TypePath(message, (), "message", DOUBLES)
     if kind is None:
         return _no_value(source, word, current, types)
-    return TypePath(message, tuple(path), kind, _numbers(current, types))
+    return TypePath(message, tuple(path), kind, numbers_of_type(current, types))
 
 
 def _bytes_in(type_: FieldType, types: MessageTypes, in_each: bool) -> tuple[str, ...] | None:
@@ -207,9 +208,10 @@ def _index(source: Source, part: syntax.Word, type_: FieldType) -> tuple[PathSte
     return number, FieldType(type_.base)
 
 
-def _field(
+def field_of(
     source: Source, part: syntax.Word, type_: FieldType, types: MessageTypes
 ) -> tuple[PathStep, FieldType] | Diagnostic:
+    """The field of a value of `type_` that `part` names, and its type."""
     if type_.is_list:
         choice = f"choose an element, as in `[0].{part.text}`, or all, as in `[].{part.text}`"
         return diagnostic("LTL203", source, part.span, f"`{type_}` is an array: its elements have fields", help=choice)

@@ -128,6 +128,8 @@ def _aligned_command(command: syntax.Command, pieces: Sequence[Piece]) -> Line:
     match command:
         case syntax.Declaration() | syntax.ObjectFromTopic():
             ends = [2, 3, len(pieces)]
+        case syntax.PropertyCommand(_, syntax.Word(), is_assumed=True):
+            ends = [3, len(pieces)]
         case syntax.ObjectAtPlace() | syntax.PropertyCommand(_, syntax.Word()):
             ends = [2, len(pieces)]
         case syntax.Zone():
@@ -136,7 +138,7 @@ def _aligned_command(command: syntax.Command, pieces: Sequence[Piece]) -> Line:
             ends = [1, len(pieces)]
         case _:
             ends = [len(pieces)]
-    kind = "object" if pieces[0].terminal == "object" else type(command).__name__
+    kind = pieces[0].terminal if pieces[0].terminal in ("object", "assume") else type(command).__name__
     return Line(tuple(_text(pieces[start:end]) for start, end in pairwise([0, *ends])), kind)
 
 

@@ -99,7 +99,7 @@ def _touches(before: str, terminal: str) -> bool:
         return before not in _BEFORE_LISTS
     if terminal == "(":
         return before in ("FUNCTION", "QUANTIFIER", "rate")
-    return terminal == "{" and before != "in"
+    return terminal == "{" and before not in ("in", "NAME")
 
 
 def _level(ahead: str, before: str, terminal: str, depth: int) -> tuple[int, int] | None:

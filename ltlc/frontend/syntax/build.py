@@ -88,6 +88,26 @@ def association(span: Span, name: Token, _: Token, value: syntax.Node) -> syntax
     return syntax.Association(span, word(name), value)
 
 
+def guard(span: Span, *parts: Any) -> syntax.Guard:
+    _, raw, _, out, *fallbacks = parts
+    return syntax.Guard(span, word(raw), word(out), tuple(map(word, fallbacks[1])) if fallbacks else ())
+
+
+def message(span: Span, *parts: Any) -> syntax.Message:
+    _, name, _, *constants, _ = parts
+    return syntax.Message(span, word(name), tuple(*constants))
+
+
+def constant(span: Span, name: Token, *parts: Any) -> syntax.Constant:
+    *steps, _, value = parts
+    path = reference(name.span.to(steps[0][-1].span) if steps else name.span, name, *steps)
+    return syntax.Constant(span, path, value)
+
+
+def assumed(span: Span, _: Token, command: syntax.PropertyCommand) -> syntax.PropertyCommand:
+    return replace(command, span=span, is_assumed=True)
+
+
 def labelled(span: Span, label: Token, _: Token, value: syntax.Node) -> syntax.PropertyCommand:
     return syntax.PropertyCommand(span, word(label), value)
 

@@ -53,6 +53,10 @@ HEADS = {
     "each": re.compile(r"[ \t]+([^\W\d]\w*[ \t]+of\b|new[ \t]+[^\W\d])"),
     "of": _ANYTHING,
     "limit": _ANYTHING,
+    "guard": re.compile(r"[ \t]+[~/{\w][^\s#;,=()]*[ \t]+to[ \t]+[~/{\w]"),
+    "to": _ANYTHING,
+    "message": re.compile(r"[ \t]+[^\W\d]\w*[ \t]*\{"),
+    "assume": re.compile(r"[ \t]+(?!(?:and|or|implies|since|within|for|in)\b)[\"@({\w]"),
     "else": _ANYTHING,
     "over": re.compile(r"\s*\("),
     "rate": re.compile(r"[ \t]*\([^()\n]*\)[ \t]*(?:[<>]=?|[=!]=)[ \t]*[\d.]+(?:[eE][+-]?\d+)?[ \t]*Hz\b"),
@@ -331,7 +335,7 @@ def _template(text: str, start: int) -> Token | None:
 def _word(text: str, start: int, acceptable: Container[str]) -> Token | None:
     message = _MESSAGE.match(text, start)
     if message is not None:
-        return Token("MESSAGE", Span(start, message.end()), message.group())
+        return Token("MESSAGE_TYPE", Span(start, message.end()), message.group())
     match = _WORD.match(text, start)
     if match is None:
         return None

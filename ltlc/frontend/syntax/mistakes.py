@@ -30,6 +30,9 @@ FORMS = {
     "model": "model NAME: ATTRIBUTE TOPIC TYPE.FIELD ;",
     "object": "object NAME TOPIC TYPE` or `object NAME at (x, y, z)",
     "zone": "zone NAME = [(x, y), (x, y), (x, y)]",
+    "guard": "guard TOPIC to TOPIC else NAME, NAME",
+    "message": "message NAME {FIELD.FIELD: VALUE, FIELD: VALUE}",
+    "assume": "assume PROPERTY` or `assume LABEL: PROPERTY",
     "forall": "forall NAME in {NAME, NAME}: PROPERTY",
     "each": "each NAME of SIGNAL: PROPERTY` or `each new SIGNAL: PROPERTY",
     "@": "@{SIGNAL, -SAMPLES}",
@@ -44,7 +47,8 @@ _TOPIC_AND_PATH = re.compile(r"(/[\w/]+)(\.[\w.\[\]]+)?")
 _IN_BRACES = re.compile(r"\{([A-Za-z]\w*)\}", re.ASCII)
 _CLOSING = {"(": ")", "{": "}", "[": "]"}
 _VALUE_BEGINS = frozenset({"NAME", "NUMBER", "STRING", "true", "false", "(", "FUNCTION", "QUANTIFIER"})
-_COMMANDS = TEMPORAL | {"decl", "model", "object", "zone", "forall", "SETTING", "ATTRIBUTES", "WITHIN_FIRST", END}
+_DEFINING = ("decl", "model", "object", "zone", "guard", "message", "SETTING")
+_COMMANDS = TEMPORAL | {*_DEFINING, "assume", "forall", "ATTRIBUTES", "WITHIN_FIRST", END}
 _PLAIN_VALUE = re.compile(
     r"(?:^|[(,:]|(?<![=<>!])=|\b(?:and|or|implies|always|never|eventually|initially))\s*([\w.]+)\s*$",
     re.ASCII | re.MULTILINE,
@@ -209,6 +213,14 @@ def _after_previous(at: Situation, text: str, *, is_certain: bool = False) -> Fi
     return put(at.place.start if at.previous is None else at.previous.span.end, text, is_certain=is_certain)
 
 
+def _colon_in_message(at: Situation) -> Diagnostic | None:
+    if at.token.terminal != "=" or ":" not in at.expected or not any(t.terminal == "message" for t in at.waiting):
+        return None
+    return at.report(
+        "LTL001", "a field of a message gets its value by `:`", help=write(writing(at.place, ":", is_certain=True))
+    )
+
+
 def _single_equals(at: Situation) -> Diagnostic | None:
     if at.token.terminal != "=" or at.previous is None or at.previous.terminal not in _VALUE_ENDS:
         return None
@@ -350,7 +362,7 @@ def _missing_semicolon(at: Situation) -> Diagnostic | None:
 
 
 def _incomplete_command(at: Situation) -> Diagnostic | None:
-    opener = next((t for t in at.waiting if t.terminal in ("decl", "model", "object", "zone", "SETTING")), None)
+    opener = next((t for t in at.waiting if t.terminal in _DEFINING), None)
     if opener is None or (at.begins_value and opener.terminal not in ("object", "zone")):
         return None
     form = FORMS.get(opener.terminal, f"{opener.text} = VALUE")
@@ -370,6 +382,7 @@ def _stray_closing(at: Situation) -> Diagnostic | None:
 
 _MISTAKES: tuple[Callable[[Situation], Diagnostic | None], ...] = (
     _definition_in_model,
+    _colon_in_message,
     _single_equals,
     _keyword_as_name,
     _attributes,

@@ -29,7 +29,9 @@ MAX_ERRORS = 50
 MAX_DEPTH = 200
 """How deeply a property may be nested; the passes that follow are recursive."""
 
-_COMMAND_KEYWORDS = frozenset({"decl", "model", "object", "zone", "forall", "SETTING", "ATTRIBUTES"})
+_COMMAND_KEYWORDS = frozenset(
+    {"decl", "model", "object", "zone", "guard", "message", "assume", "forall", "SETTING", "ATTRIBUTES"}
+)
 
 _COMMAS = {"after": 1, "until": 1, "after_until": 2, "WITHIN_FIRST": 1}
 """How many commas a keyword has after it."""

@@ -64,6 +64,8 @@ _ANY = "for at least one element, write `any` in place of `all`"
 _LAST_SECOND = "a rate is the number of messages in a time, here the last second, which must be at least so many"
 _SUBJECT = r"(?P<v>[A-Za-z]\w*(?:\.\w+)*)"
 _COMPARED = r"(?P<c>\s*(?:[<>]=?|[=!]=)\s*[-\w.]+)?"
+_TOPIC = r"[/~][\w/~]+"
+_GUARD = rf"guard\s+{_TOPIC}\s+to\s+{_TOPIC}"
 _WINDOW = rf"\(\s*{_SUBJECT}\s*\)\s+(?:over|within)\s+{_D}"
 
 PHRASES: tuple[Phrase, ...] = (
@@ -121,6 +123,23 @@ PHRASES: tuple[Phrase, ...] = (
     ),
     Phrase(r"(?P<x>decl\s+\w+\s+\S+\s+\w+)(?:::msg)?::(?P<y>\S+)", "{x!r}/{y!r}"),
     Phrase(r"(?P<x>decl\s+\w+\s+\S+\s+[\w/]+)\s+(?P<y>[a-z][\w.\[\]]*)", "{x!r}.{y!r}"),
+    # Guards.
+    Phrase(
+        rf"guard\s+(?P<t>{_TOPIC})\s*(?:,|implies|into|as)?\s*(?<!\w)(?P<o>{_TOPIC})(?P<y>.*)",
+        "guard {t!r} to {o!r}{y!r}",
+    ),
+    Phrase(rf"guard\s+(?P<o>{_TOPIC})\s+(?:from|of)\s+(?P<t>{_TOPIC})(?P<y>.*)", "guard {t!r} to {o!r}{y!r}"),
+    Phrase(
+        rf"(?P<x>{_GUARD})(?:\s*,\s*|\s*,?\s+(?:or\s+else|or|otherwise|fallback|default|with)\s+)(?P<y>\w.*)",
+        "{x!r} else {y!r}",
+    ),
+    Phrase(
+        rf"(?P<x>{_GUARD}\s+else\s+\w+(?:\s*,\s*\w+)*)\s+(?:(?:or\s+else|or|else|then|and)\s+)?(?P<y>\w.*)",
+        "{x!r}, {y!r}",
+    ),
+    Phrase(r"(?P<x>message\s+\w+)\s*[:=(]+\s*(?P<y>\{.*\})\)?", "{x!r} {y!r}"),
+    Phrase(r"(?:assum(?:e|es|ing|ption))(?:\s+that|\s*:)?\s+(?P<x>.+)", "assume {x!r}"),
+    Phrase(r"(?P<l>\w+)\s*:\s*assume\s+(?P<x>.+)", "assume {l!r}: {x!r}"),
     # FRET.
     Phrase(rf"(?:whenever)\s+{_P},?\s+(?P<s>{_SHALL}.+)", "always ({p} implies ({s!r}))"),
     Phrase(rf"(?:upon|when|if)\s+{_P},?\s+(?P<s>{_SHALL}.+)", "always ({p} and not previously {p} implies ({s!r}))"),

@@ -324,6 +324,31 @@ class Association(Node):
 
 
 @dataclass(frozen=True, slots=True)
+class Guard(Node):
+    """`guard raw to out else fallbacks`; without `else`, none."""
+
+    raw: Word
+    out: Word
+    fallbacks: tuple[Word, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Constant(Node):
+    """`path: value`, in a message."""
+
+    path: Reference
+    value: Node
+
+
+@dataclass(frozen=True, slots=True)
+class Message(Node):
+    """`message NAME {constants}`."""
+
+    name: Word
+    constants: tuple[Constant, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class Setting(Node):
     """`_name_ = value`; the value of `_simulator_` may be a topic, which is a `Word`."""
 
@@ -376,22 +401,35 @@ class EachMessage(Node):
 
 @dataclass(frozen=True, slots=True)
 class PropertyCommand(Node):
-    """`[LABEL:] property`; of a property that `forall` has written out, the names of its variables, too.
+    """`[LABEL:] property`, or `assume [LABEL:] property`.
 
-    The `attributes` in front of it are outside its `span`.
+    Of a property that `forall` has written out, it has the names of its variables, too. The `attributes` in front of it
+    are outside its `span`.
     """
 
     label: Word | None
     property: Node
     names: Mapping[str, Word] = field(default_factory=dict)
     attributes: tuple[AttributeLine, ...] = ()
+    is_assumed: bool = False
 
     def whole(self) -> Span:
         """The place of all of it, the attributes included."""
         return self.attributes[0].span.to(self.span) if self.attributes else self.span
 
 
-Command = Declaration | Model | ObjectFromTopic | ObjectAtPlace | Zone | Association | Setting | PropertyCommand
+Command = (
+    Declaration
+    | Model
+    | ObjectFromTopic
+    | ObjectAtPlace
+    | Zone
+    | Association
+    | Guard
+    | Message
+    | Setting
+    | PropertyCommand
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -446,6 +484,10 @@ def children(node: Node) -> tuple[Node, ...]:
             return coordinates
         case Zone(_, _, corners):
             return corners
+        case Message(_, _, constants):
+            return constants
+        case Constant(_, _, value):
+            return (value,)
         case Corner(_, x, y):
             return (x, y)
         case _:
@@ -455,9 +497,9 @@ def children(node: Node) -> tuple[Node, ...]:
 def runs_on(text: str, first: Node, second: Node) -> bool:
     """Whether a property without a label begins behind another command on its line, with only blanks between them.
 
-    What begins behind a declaration may be its path.
+    What begins behind a declaration may be its path, and behind a guard one more fallback.
     """
-    if not isinstance(first, PropertyCommand | Declaration) or not isinstance(second, PropertyCommand):
+    if not isinstance(first, PropertyCommand | Declaration | Guard) or not isinstance(second, PropertyCommand):
         return False
     between = text[first.span.end : second.span.start]
     return second.label is None and first.span != second.span and between.strip(" \t") == ""

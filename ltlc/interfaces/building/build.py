@@ -8,16 +8,19 @@ from ltlc.assurance.evidence.certified import entry_of
 from ltlc.assurance.gate import Judgement, judge_all
 from ltlc.assurance.messages import Messages
 from ltlc.assurance.pairs import followed
+from ltlc.base.codes import diagnostic
 from ltlc.base.diagnostics import Diagnostic
 from ltlc.base.limits import Budget, Exceeded, Watch
+from ltlc.base.source import Source
 from ltlc.compiler import Compiled
 from ltlc.dataclass import dataclass
 from ltlc.frontend.language import types_for
-from ltlc.interfaces.building.targets import Made, Target
+from ltlc.interfaces.building.targets import Made, Target, UnfitError
 from ltlc.interfaces.building.wording import GATE_MEMORY, GATE_SECONDS, failures, summary
 from ltlc.semantics.certificate import Certificate
 from ltlc.semantics.certificate_reader import UnreadableError, parse
 from ltlc.semantics.certificate_text import to_text
+from ltlc.specification.guards import Guard
 from ltlc.specification.specification import Specification
 
 
@@ -78,8 +81,16 @@ def build(
 
     `budget` is what the translation of each property may use; judging it may use some times as much. Raises UnfitError.
     """
+    if specification.guards:
+        raise UnfitError([_without_guard(specification.source, guard) for guard in specification.guards])
     messages = Messages(types_for(specification.source, message_paths)[0])
     made = target.make(compiled, specification, messages)
     gate = Budget(GATE_SECONDS * budget.seconds, GATE_MEMORY * budget.megabytes)
     judgements = judge_all(compiled, made.programs, messages, gate, watch, made.written)
     return Built(specification, compiled, target, made, judgements)
+
+
+def _without_guard(source: Source, guard: Guard) -> Diagnostic:
+    message = f"guards are not emitted yet: the output would monitor `{guard.out}`, and hold back nothing"
+    help = "nothing was written; to emit the monitors alone, build the properties from a file without a guard"
+    return diagnostic("LTL708", source, guard.span, message, help=help)

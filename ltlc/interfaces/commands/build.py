@@ -16,6 +16,7 @@ from ltlc.interfaces.commands import arguments
 from ltlc.interfaces.commands.common import (
     FINDING,
     OK,
+    UNUSABLE,
     compile_file,
     overwritten,
     refused,
@@ -81,7 +82,7 @@ def run(options: argparse.Namespace) -> int:
             built = build(prepared.specification, prepared.compiled, target, options.msg_path, prepared.budget, watch)
     except UnfitError as error:
         report(error.diagnostics)
-        return FINDING
+        return UNUSABLE if prepared.specification.guards else FINDING
     if not options.quiet:
         for label, summary in built.summaries():
             print(f"{label}: {summary}")

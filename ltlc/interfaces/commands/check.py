@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 from ltlc.automata import Budget, SpotMissing
 from ltlc.base.codes import diagnostic
 from ltlc.base.diagnostics import Diagnostic, Severity
+from ltlc.base.nearest import did_you_mean
 from ltlc.base.render import concise
 from ltlc.frontend.language import STDIN
 from ltlc.interfaces.api.check import Check, check_of
@@ -31,6 +32,7 @@ from ltlc.interfaces.commands.common import (
 from ltlc.interfaces.commands.fix import NotFixedError, fix_source, show_difference
 from ltlc.interfaces.commands.sources import found_in
 from ltlc.interfaces.commands.watching import add_watch, watched
+from ltlc.specification.specification import topics
 
 if TYPE_CHECKING:
     from ltlc.analysis.examine import Examined
@@ -42,6 +44,10 @@ TEXT = ("full", "concise")
 """The forms that are for people."""
 
 
+class UnreadTopicError(ValueError):
+    """A controller is said to send what no property reads."""
+
+
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """What `ltlc check` takes."""
     arguments.add_specifications(parser, "specification files, or folders of *.ltlc files; `-` for stdin")
@@ -49,6 +55,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--format", choices=(*TEXT, "json", "sarif"), default="full")
     parser.add_argument("--strict", action="store_true", help="treat warnings as errors")
     parser.add_argument("--pedantic", action="store_true", help="also report matters of opinion")
+    parser.add_argument(
+        "--controls",
+        action="append",
+        default=[],
+        metavar="TOPIC",
+        help="what a controller sends: also report whether one can keep the properties; may be repeated",
+    )
     parser.add_argument(
         "--recording",
         action="append",
@@ -88,7 +101,7 @@ def _run(options: argparse.Namespace) -> int:
             found, done = _check(path, options, ids)
         except SpotMissing as error:
             return unusable(str(error))
-        except NotFixedError as error:
+        except (NotFixedError, UnreadTopicError) as error:
             code = unusable(str(error))
             continue
         checked = checked + found
@@ -106,15 +119,32 @@ def _run(options: argparse.Namespace) -> int:
 def _check(path: Path, options: argparse.Namespace, ids: dict[str, str]) -> tuple[Check, int]:
     """The findings about a file, once it is fixed if that was requested, and the number of fixes.
 
-    Those `ids` of requirements have been given, each in a file; its own are added. Raises SpotMissing and
-    NotFixedError.
+    Those `ids` of requirements have been given, each in a file; its own are added. Raises SpotMissing, NotFixedError
+    and UnreadTopicError.
     """
     source, fixes = read_specification(path, options.msg_path, options.recording), 0
     if options.fix and not isinstance(source, Diagnostic):
         source, fixes = fix_source(path, source, options)
     budget = Budget(*options.budget)
-    examined = examine(source, options, budget, pedantic=options.pedantic, recordings=options.recording)
+    examined = examine(
+        source,
+        options,
+        budget,
+        pedantic=options.pedantic,
+        controls=tuple(dict.fromkeys(options.controls)),
+        recordings=options.recording,
+    )
+    _check_topics(path, examined, options.controls)
     return check_of(_traced(_compared(examined, options), ids), source), fixes
+
+
+def _check_topics(path: Path, examined: Examined, controls: Sequence[str]) -> None:
+    """Raises UnreadTopicError."""
+    read = {topic for subject in examined.subjects for topic in topics(subject.specification)}
+    for topic in controls:
+        if examined.specification is not None and topic not in read:
+            hint = did_you_mean(topic, read)
+            raise UnreadTopicError(f"{path}: no property reads `{topic}`{f'; {hint}' if hint else ''}")
 
 
 def _traced(examined: Examined, ids: dict[str, str]) -> Examined:

@@ -54,6 +54,7 @@ def examine(
     budget: Budget,
     *,
     pedantic: bool = False,
+    controls: Sequence[str] = (),
     recordings: Sequence[Path] = (),
 ) -> Examined:
     """Load what was `read` of a specification, which is about `recordings`, and analyse it. Raises SpotMissing."""
@@ -62,7 +63,14 @@ def examine(
     encoding = ENCODINGS[options.encoding]
     with progress("checking", options.quiet) as watch:
         return examine.examine(
-            read, options.msg_path, encoding, budget, watch, pedantic=pedantic, recordings=recordings
+            read,
+            options.msg_path,
+            encoding,
+            budget,
+            watch,
+            pedantic=pedantic,
+            controls=controls,
+            recordings=recordings,
         )
 
 

@@ -8,6 +8,7 @@ import textwrap
 from collections.abc import Iterator
 from pathlib import Path
 
+from ltlc.analysis import guard_words
 from ltlc.analysis.analyse import study_of
 from ltlc.analysis.explanation import CLASSES, Explanation, explain
 from ltlc.analysis.wording import listed
@@ -21,6 +22,8 @@ from ltlc.interfaces.commands.common import OK, failure, report, unusable
 from ltlc.interfaces.commands.progress import progress
 from ltlc.semantics.encodings import ENCODINGS
 from ltlc.semantics.verdicts import Verdict
+from ltlc.specification.guards import Guard
+from ltlc.specification.specification import Specification
 
 WIDTH = 110
 """Columns to which text is wrapped."""
@@ -53,8 +56,25 @@ def run(options: argparse.Namespace) -> int:
             explanations = explain(study, Budget(*options.budget), watch)
     except SpotMissing as error:
         return unusable(str(error))
-    print("\n\n".join("\n".join(_lines(explanation)) for explanation in explanations))
+    guards = ("\n".join(_guard_lines(specification, guard)) for guard in specification.guards)
+    print("\n\n".join([*guards, *("\n".join(_lines(explanation)) for explanation in explanations)]))
     return OK
+
+
+def _guard_lines(specification: Specification, guard: Guard) -> Iterator[str]:
+    """One guard."""
+    yield f"guard of {guard.out}"
+    yield from _indented(guard_words.stated(guard))
+    yield ""
+    yield from _indented(guard_words.sentences(specification, guard))
+    yield ""
+    yield from _entry("keeps", ", ".join(each.label for each in specification.kept_by(guard)))
+    if assumed := [each.label for each in specification.properties if each.is_assumed]:
+        yield from _entry("assumes", ", ".join(assumed))
+    for fallback in guard.fallbacks:
+        yield from _entry("sends", f"{fallback.name}: {guard_words.contents(fallback)}")
+    if waits := guard_words.waits_for(specification, guard):
+        yield from _entry("begins", f"once a message has come on {listed(waits)}; until then nothing leaves it")
 
 
 def _lines(explained: Explanation) -> Iterator[str]:

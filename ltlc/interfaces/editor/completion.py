@@ -11,6 +11,7 @@ from ltlc.base.source import Span
 from ltlc.frontend.language.define import SETTINGS
 from ltlc.frontend.language.primitives import MODELLED
 from ltlc.frontend.language.signals import SIMULATORS, SOURCES
+from ltlc.frontend.syntax import tree as syntax
 from ltlc.frontend.syntax.lexer import CONTEXTUAL, FUNCTIONS, KEYWORDS, QUANTIFIERS
 from ltlc.frontend.syntax.parse import Expectation, expected_after
 from ltlc.interfaces.editor.document import Document
@@ -23,6 +24,8 @@ _CHUNK = re.compile(r"[^\s#;,=()]*\Z")
 _DOTTED = re.compile(r"((?:[\w/]|\{\w+\})+(?:\.(?:\w|\{\w+\})+|\[[^\]\n]*\])*)\.\w*\Z")
 _EACH = re.compile(r"\beach[ \t]+(\w+)[ \t]+of\b\s*(\w+)")
 _HEAD = re.compile(r"(?:^|:)[ \t]*each[ \t]+(?:(\w+)[ \t]+)?\Z", re.MULTILINE)
+_GUARD = re.compile(r"^[ \t]*guard[ \t]+(?:(\S+)[ \t]+(to[ \t]+)?)?\Z", re.MULTILINE)
+_IN_MESSAGE = re.compile(r"\bmessage[ \t]+(\w+)[ \t]*\{(?:[^{}]*,)?\s*((?:\w+\.)*)\Z")
 _COUNTED = re.compile(r"\bonce\b[^\n,]*[ \t]\d+[ \t]+\Z")
 _FORALL = re.compile(r"\bforall\b([\w\s,]+)\bin\s*\{([\w\s,]*)\}")
 _COMMENT = re.compile(r'(?:[^"#\n]|"(?:[^"\\\n]|\\.)*")*#(.*)')
@@ -55,6 +58,10 @@ def completions(document: Document, offset: int) -> Completions:
     if "TOPIC" in expected.terminals and ("NUMBER" not in expected.terminals or chunk.startswith(("/", "~"))):
         return _at(before, _CHUNK, [*_topics(document), *_keywords(expected.terminals)])
     word = _begun(before, _WORD)
+    if guard := _at_end(before.removesuffix(chunk), _GUARD):
+        return _at(before, _CHUNK, _words_of("to") if guard[1] and not guard[2] else _topics(document))
+    if inside := _at_end(before.removesuffix(word), _IN_MESSAGE):
+        return _at(before, _WORD, _fields(document, inside[1], inside[2]))
     expected = expected if word == chunk else expected_after(before.removesuffix(word))
     variables = _variables(before[expected.start :])
     if dotted := _at_end(before, _DOTTED):
@@ -94,6 +101,15 @@ def _codes() -> Iterator[Suggestion]:
 
 def _topics(document: Document) -> Iterator[Suggestion]:
     return (Suggestion(word.text, "topic") for word in document.words if word.kind is WordKind.TOPIC)
+
+
+def _fields(document: Document, message: str, path: str) -> Iterator[Suggestion]:
+    """The fields behind `path` of what the guard sends that may send `message`."""
+    checker = document.reading.checker
+    for guard in (command for command in document.tree.commands if isinstance(command, syntax.Guard)):
+        out = f"/{guard.out.text.removeprefix('/')}"
+        if message in (name.text for name in guard.fallbacks) and out in checker.names.topics:
+            yield from fields_after(f"{checker.names.topics[out][0]}.{path}", checker.types)
 
 
 def _types(document: Document, expected: Expectation, written: str) -> Iterator[Suggestion]:
@@ -138,6 +154,9 @@ def _words(document: Document, expected: Expectation, variables: Mapping[str, st
             yield from _with_constants(document)
         functions = (*FUNCTIONS, *(QUANTIFIERS if "QUANTIFIER" in expected.terminals else ()))
         yield from (Suggestion(name, "function", MEANINGS[name].form) for name in functions)
+    elif before[:1] == ["guard"] and before[-1] in ("else", ","):
+        messages = (command for command in document.tree.commands if isinstance(command, syntax.Message))
+        yield from (Suggestion(command.name.text, "message") for command in messages)
     elif "of" in before and before[-1] in ("of", ","):
         yield from _names(document)
     elif before[:1] == ["forall"] and "{" in before:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
+from ltlc.analysis import guard_words
 from ltlc.analysis.english import English
 from ltlc.base.codes import CODES, page
 from ltlc.base.diagnostics import Diagnostic
@@ -54,11 +55,21 @@ def _of_word(document: Document, word: Word) -> Iterator[str]:
             yield f"`{word.text}` stands for {', '.join(f'`{name}`' for name in names if name) or 'a name of the set'}"
             yield from _named(document, word)
         case WordKind.TOPIC | WordKind.TYPE:
+            guards = document.reading.sound.guards
+            yield from (guard_words.sentences(document.reading.sound, g) for g in guards if _holds(g.span, word.span))
             commands = (c for c in document.tree.commands if isinstance(c, syntax.Declaration))
             declared = [c.name for c in commands if _holds(c.span, word.span)]
             yield from (text for name in declared if (text := described(document, syntax.Reference(name.span, name))))
         case _:
+            yield from _message(document, word)
             yield from _named(document, word)
+
+
+def _message(document: Document, word: Word) -> Iterator[str]:
+    """The message that a guard may send, if that is what a name stands for."""
+    for command in document.tree.commands if word.kind is WordKind.NAME else ():
+        if isinstance(command, syntax.Message) and command.name.text == word.text:
+            yield f"`{document.source.excerpt(command.span)}`: fields that are not named are zero, false or empty"
 
 
 def _named(document: Document, word: Word) -> Iterator[str]:

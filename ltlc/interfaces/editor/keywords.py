@@ -108,8 +108,18 @@ OTHERS = {
     "zone": Meaning(
         "zone NAME = [(x, y), …]", "a polygon in the plane, given by its corners; its border belongs to it"
     ),
+    "guard": Meaning(
+        "guard RAW to OUT else NAME, …",
+        "commands come on RAW, and what the robot gets leaves on OUT. A guard keeps every property that reads OUT",
+    ),
+    "message": Meaning(
+        "message NAME {PATH: VALUE, …}",
+        "a message that a guard may send, a *fallback*: fields that are not named are zero, false or empty",
+    ),
+    "assume": Meaning("assume P", "a property that a guard relies on and does not keep"),
     "_rate_": Meaning("_rate_ = 30", "makes a step at regular times (Hz) instead of at every message"),
     "_timeout_": Meaning("_timeout_ = 60 s", "ends the run"),
+    "_lead_": Meaning("_lead_ = 10 ms", "how long before a deadline a guard acts (10 ms)"),
     "_margin_": Meaning("_margin_ = 0.01", "the default margin of `==` and `!=` between numbers or vectors"),
     "_simulator_": Meaning("_simulator_ = tf", "the source of the ground truth of undeclared objects"),
 }

@@ -35,6 +35,8 @@ _SYMBOLS = {
     EntryKind.ATTRIBUTE: types.SymbolKind.Field,
     EntryKind.OBJECT: types.SymbolKind.Object,
     EntryKind.ASSOCIATION: types.SymbolKind.Constant,
+    EntryKind.GUARD: types.SymbolKind.Interface,
+    EntryKind.MESSAGE: types.SymbolKind.Constant,
     EntryKind.SETTING: types.SymbolKind.Property,
     EntryKind.PROPERTY: types.SymbolKind.Event,
 }
@@ -45,6 +47,8 @@ _ITEMS = {
     "association": types.CompletionItemKind.Constant,
     "model": types.CompletionItemKind.Class,
     "object": types.CompletionItemKind.Class,
+    "zone": types.CompletionItemKind.Class,
+    "message": types.CompletionItemKind.Constant,
     "variable": types.CompletionItemKind.Variable,
     "function": types.CompletionItemKind.Function,
     "setting": types.CompletionItemKind.Property,

@@ -22,6 +22,8 @@ class EntryKind(Enum):
     ATTRIBUTE = "attribute"
     OBJECT = "object"
     ASSOCIATION = "association"
+    GUARD = "guard"
+    MESSAGE = "message"
     SETTING = "setting"
     PROPERTY = "property"
 
@@ -52,6 +54,10 @@ def outline(document: Document) -> Iterator[Entry]:
                 yield Entry(EntryKind.OBJECT, name.text, "", span, name.span)
             case syntax.Association(span, name, value):
                 yield Entry(EntryKind.ASSOCIATION, name.text, _text(document, value.span), span, name.span)
+            case syntax.Guard(span, raw, out):
+                yield Entry(EntryKind.GUARD, out.text, raw.text, span, out.span)
+            case syntax.Message(span, name):
+                yield Entry(EntryKind.MESSAGE, name.text, "", span, name.span)
             case syntax.Setting(span, name, value):
                 yield Entry(EntryKind.SETTING, name.text, _text(document, value.span), span, name.span)
             case syntax.PropertyCommand(span, label, property_):

@@ -20,6 +20,7 @@ _NAMES = {
     DefinitionKind.MODEL: "class",
     DefinitionKind.OBJECT: "class",
     DefinitionKind.ZONE: "class",
+    DefinitionKind.MESSAGE: "macro",
 }
 
 _WORDS = {

@@ -19,7 +19,7 @@ class WordKind(Enum):
     """What a word is the name of."""
 
     NAME = "name"
-    """A declaration, an association, a model or an object: they share one space of names."""
+    """A declaration, an association, a model, an object or a message: they share one space of names."""
     VARIABLE = "variable"
     """A variable of a `forall`."""
     LABEL = "label"
@@ -108,6 +108,15 @@ class _Finder:
                     yield from _source(attribute)
             case syntax.ObjectAtPlace(_, name) | syntax.Zone(_, name) | syntax.Association(_, name):
                 yield _word(WordKind.NAME, name, defines=True)
+                yield from self._inside(command, {})
+            case syntax.Guard(_, raw, out, fallbacks):
+                yield from (_word(WordKind.TOPIC, topic) for topic in (raw, out))
+                yield from (_word(WordKind.NAME, name) for name in fallbacks)
+            case syntax.Message(_, name, constants):
+                yield _word(WordKind.NAME, name, defines=True)
+                for constant in constants:
+                    path = (constant.path.name, *constant.path.steps)
+                    yield from (_word(WordKind.MEMBER, step) for step in path if isinstance(step, syntax.Word))
                 yield from self._inside(command, {})
             case syntax.Setting(_, name, value):
                 yield _word(WordKind.SETTING, name)

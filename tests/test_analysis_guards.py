@@ -1,0 +1,199 @@
+"""What guards may do, solved: against the same game by brute force, and guards as people write them."""
+
+from __future__ import annotations
+
+import random
+from dataclasses import replace
+
+import pytest
+from effort import share_of
+from guarding import MS, Brute, Drawn, Event, Followed, drawn, loaded
+
+from ltlc.analysis.analyse import study_of
+from ltlc.analysis.guards.plays import play
+from ltlc.analysis.guards.solution import solve
+from ltlc.analysis.questions import guard_holds_back, guard_passes_nothing, guard_takes_back, uncontrollable
+from ltlc.automata import Budget
+from ltlc.semantics.arenas import Outcome
+from ltlc.semantics.encodings import EPISODE
+
+MOMENTS = [0, 1, 5 * MS, 10 * MS, 10 * MS + 1, 20 * MS, 20 * MS + 1]
+"""What lies between two messages, in ns: about the bounds of drawn guards."""
+
+
+def positions(guard: Drawn, chance: random.Random) -> list[tuple[tuple[Event, ...], int, bool]]:
+    """A run of a drawn guard as far as it has come each time, the time then, and whether the guard may rest there."""
+    specification, arenas = loaded(guard.text)
+    solution = solve(arenas[0])
+    followed, found = Followed(specification, solution.game, guard), []
+    events: tuple[Event, ...] = ()
+    now = 1000 * MS
+    first = chance.sample([t for t in guard.values if t != guard.out], len(guard.values) - 1)
+    for topic in [*first, *chance.choices([*guard.values, guard.out], k=chance.randrange(1, 4))]:
+        now += 0 if len(events) < len(first) else chance.choice(MOMENTS)
+        event = (now, topic, chance.choice(list(guard.messages(topic))))
+        followed.take(event)
+        events = (*events, event)
+        if Outcome.VIOLATED in followed.joint.standings:
+            break
+        if followed.joint.sent is not None and Outcome.WAITING not in followed.joint.standings:
+            found.append((events, now, followed.rests(solution.rests)))
+    return found
+
+
+@pytest.mark.parametrize("seed", range(share_of(100)))
+def test_where_a_guard_may_rest_the_world_forces_no_violation(seed: int) -> None:
+    chance = random.Random(seed)
+    guard = drawn(chance)
+    brute = Brute(guard)
+    for events, now, rests in positions(guard, chance):
+        assert not rests or not (brute.is_violated(events, now) or brute.is_forced(events, now, 2)), events
+
+
+@pytest.mark.parametrize("seed", range(share_of(100)))
+def test_where_a_guard_without_clocks_may_not_rest_the_world_forces_a_violation(seed: int) -> None:
+    chance = random.Random(seed)
+    guard = drawn(chance, timed=False)
+    brute = Brute(guard)
+    for events, now, rests in positions(guard, chance):
+        assert rests or any(brute.is_forced(events, now, depth) for depth in (1, 2, 3)), events
+
+
+@pytest.mark.parametrize("seed", range(share_of(50)))
+def test_a_play_from_where_a_guard_may_not_rest_ends_in_a_violation(seed: int) -> None:
+    _, (arena, *_) = loaded(drawn(random.Random(seed)).text)
+    solution = solve(arena)
+    d = solution.game.diagrams
+    for joint, rests in solution.rests.items():
+        for path, outside in d.paths(d.conjunction(solution.game.possible, d.negation(rests))):
+            if outside and arena.outcome(joint) is None:
+                letter = frozenset(solution.game.atoms[level] for level, holds in path.items() if holds)
+                turns = play(solution, joint, letter)
+                assert arena.outcome(turns[-1].step.joint) is Outcome.VIOLATED
+                assert all(arena.outcome(turn.step.joint) is None for turn in turns[:-1])
+
+
+BASE = """decl speed /cmd_vel geometry_msgs/Twist.linear.x
+decl scan /scan sensor_msgs/LaserScan.ranges
+decl held /frozen std_msgs/Bool.data
+message stop {linear.x: 0}
+guard /cmd_vel_raw to /cmd_vel"""
+
+PASSES_NOTHING, BEGINS_NEVER, HOLDS_BACK, TAKES_BACK = "LTL610", "LTL611", "LTL612", "LTL613"
+UNCONTROLLABLE, CONTROLLABLE, NOT_DECIDED = "LTL616", "LTL617", "LTL690"
+
+AS_WRITTEN: dict[str, tuple[str, set[str]]] = {
+    "slow near obstacles, at once": ("else stop\np: always (min(scan) < 0.5 implies speed <= 0.2)", {HOLDS_BACK}),
+    "slow near obstacles, an instant later": (
+        "else stop\np: always (min(scan) < 0.5 and previously min(scan) < 0.5 implies speed <= 0.2)",
+        set(),
+    ),
+    "slow near obstacles, in time": (
+        "else stop\np: always (min(scan) < 0.5 implies eventually speed <= 0.2 within 100 ms)",
+        {TAKES_BACK},
+    ),
+    "slow near obstacles, in time, and no new fast command": (
+        "else stop\np: always (min(scan) < 0.5 implies eventually speed <= 0.2 within 100 ms)\n"
+        "q: always (new speed and min(scan) < 0.5 implies speed <= 0.2)",
+        set(),
+    ),
+    "a deadline that only a message keeps, which nothing sends": (
+        "\np: always (min(scan) < 0.5 implies eventually speed <= 0.2 within 100 ms)",
+        {HOLDS_BACK},
+    ),
+    "a fallback that does not help": (
+        "else go\nmessage go {linear.x: 1}\np: always not held or speed > 2",
+        {HOLDS_BACK},
+    ),
+    "what the world decides": (
+        "else stop\np: always (new speed implies speed <= 1)\nq: never (held and speed < 100)",
+        {PASSES_NOTHING},
+    ),
+    "no way to begin": ("\np: always abs(speed - @{speed, -1}) <= 0.2", {BEGINS_NEVER}),
+    "a fallback to begin with": ("else stop\np: always abs(speed - @{speed, -1}) <= 0.2", set()),
+    "at most so often": ("\np: always (new speed implies not previously once new speed within 20 ms)", set()),
+    "a silent operator": ("else stop\np: always (age(held) > 500 ms implies speed == 0)", set()),
+    "a limit that a sensor sets, below zero too": (
+        "else stop\np: always (speed > min(scan) implies eventually speed <= min(scan) within 200 ms)",
+        {PASSES_NOTHING},
+    ),
+    "a limit that a sensor sets, not below zero": (
+        "else stop\nassume always min(scan) >= 0\n"
+        "p: always (speed > min(scan) implies eventually speed <= min(scan) within 200 ms)",
+        {TAKES_BACK},
+    ),
+    "two properties at odds": (
+        "else stop\np: always (min(scan) < 0.5 implies eventually speed <= 0.2 within 100 ms)\n"
+        "q: never (new speed and held)",
+        {HOLDS_BACK},
+    ),
+}
+
+
+@pytest.mark.parametrize("name", AS_WRITTEN)
+def test_a_guard_as_people_write_it_has_its_findings(name: str) -> None:
+    text, expected = AS_WRITTEN[name]
+    specification, _ = loaded(f"{BASE} {text}\n")
+    study = study_of(specification, EPISODE, Budget())
+    asked = (guard_passes_nothing, guard_holds_back, guard_takes_back)
+    assert {finding.code for question in asked for finding in question.ask(study)} == expected
+
+
+COMMANDS = """decl speed /cmd_vel geometry_msgs/Twist.linear.x
+decl near /near std_msgs/Bool.data
+decl x /odom nav_msgs/Odometry.pose.pose.position.x
+"""
+
+CONTROLLED: dict[str, tuple[str, set[str]]] = {
+    "where the robot is": ("p: always x <= 10 or speed > 5", {CONTROLLABLE}),
+    "where the robot is, and a limit": (
+        "p: always (x <= 10 or speed > 5)\nq: always (x > 9 implies speed < 1)",
+        {UNCONTROLLABLE},
+    ),
+    "slow in time": ("p: always (near implies eventually speed <= 0 within 100 ms)", {CONTROLLABLE}),
+    "both within a time, with one message each": (
+        "p: always (near implies eventually speed > 1 within 100 ms)\n"
+        "q: always (near implies eventually speed < 0 within 100 ms)",
+        {CONTROLLABLE},
+    ),
+    "a goal again and again": ("p: always eventually speed > 1", {CONTROLLABLE}),
+    "a goal that the world forbids": (
+        "p: always eventually speed > 1\nq: always (near implies speed <= 0)",
+        {CONTROLLABLE, UNCONTROLLABLE},
+    ),
+    "a goal of the world's": ("p: always (eventually near or speed > 1)", {CONTROLLABLE}),
+    "a goal, some time after a message": (
+        "p: always (new near implies eventually speed > 1)",
+        {CONTROLLABLE, NOT_DECIDED},
+    ),
+    "nothing to command": ("p: always (near implies eventually x > 1)", set()),
+}
+
+
+@pytest.mark.parametrize("name", CONTROLLED)
+def test_whether_a_controller_can_keep_properties_is_answered(name: str) -> None:
+    text, expected = CONTROLLED[name]
+    specification, _ = loaded(f"{COMMANDS}{text}\n")
+    study = replace(study_of(specification, EPISODE, Budget()), controls=("/cmd_vel",))
+    found = [*uncontrollable.ask(study), *uncontrollable.ask_of_obligations(study)]
+    assert {finding.code for finding in found} == expected
+
+
+def test_an_emergency_stop_that_was_released_before_the_first_command_is_not_forgotten() -> None:
+    """The property waits for no command, so it begins before the first one leaves."""
+    text = (
+        "decl speed /cmd Float64.data\ndecl pressed /estop Bool.data\ndecl reset /reset Bool.data\n"
+        "guard /raw to /cmd\np: after_until pressed, reset, always (new speed implies speed <= 0)\n"
+    )
+    guard = Drawn(text, {"/cmd": {"speed": [0.0, 1.0]}, "/estop": {"pressed": []}, "/reset": {"reset": []}}, {}, [])
+    specification, (arena,) = loaded(text)
+    solution = solve(arena)
+    rests = []
+    for was_pressed in (False, True):
+        followed = Followed(specification, solution.game, guard)
+        followed.take((0, "/reset", (("reset", False),)))
+        followed.take((1, "/estop", (("pressed", was_pressed),)))
+        followed.take((2, "/estop", (("pressed", False),)))
+        followed.take((3, "/cmd", (("speed", 1.0),)))
+        rests.append(followed.rests(solution.rests))
+    assert rests == [True, False]
