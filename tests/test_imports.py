@@ -31,10 +31,10 @@ ORDER = {
     "runtime": ["runtime"],
     "inputs": ["inputs", "inputs.messages", "inputs.recordings"],
     "frontend": ["frontend", "frontend.syntax", "frontend.language", "frontend.layout", "frontend.starter"],
+    "rules": ["rules"],
     "automata": ["automata"],
     "program": ["program"],
     "compiler": ["compiler"],
-    "rules": ["rules"],
     "backends": ["backends"],
     "assurance": ["assurance"],
     "monitoring": [

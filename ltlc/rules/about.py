@@ -46,7 +46,7 @@ def specification(
         return diagnostic("LTL901", source, None, f"none of the rules `{name}` is about this"), notes
     text = layout(Source(name, found.text(chosen)))
     assert isinstance(text, str)
-    return Source(name, text), notes
+    return Source(f"@{found.name}", text), notes
 
 
 def _reason(rule: Rule, types: MessageTypes, topics: set[str] | None) -> str:

@@ -23,8 +23,9 @@ def message_types(
 ) -> tuple[MessageTypes, list[BadPath]]:
     """The messages of Jazzy, those that the bags among `recordings` define, and those below `paths`; the later win.
 
-    Also what could not be read; a recording only if a type is not known otherwise. Types that are
-    `declared`, each after its topic, are looked for in all bags. What is recorded may lack constants, which are in no message: these stay as they are.
+    Also what could not be read; a recording only if a type is not known otherwise. Types that are `declared`, each
+    after its topic, are looked for in all bags. What is recorded may lack constants, which are in no message: these stay as
+    they are.
     """
     given, problems = given_messages(paths)
     known = shipped()
