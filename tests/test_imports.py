@@ -31,6 +31,7 @@ ORDER = {
     "runtime": ["runtime"],
     "inputs": ["inputs", "inputs.messages", "inputs.recordings"],
     "frontend": ["frontend", "frontend.syntax", "frontend.language", "frontend.layout", "frontend.starter"],
+    "rules": ["rules"],
     "automata": ["automata"],
     "program": ["program"],
     "compiler": ["compiler"],

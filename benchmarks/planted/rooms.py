@@ -46,6 +46,7 @@ ROOMS = {
     "inputs/recordings": "test_recordings*.py test_bag*.py test_tables*.py test_one_drive_*.py test_damage.py "
     "test_ulog.py",
     "base/render": "test_render*.py",
+    "rules": "test_rules.py",
     "runtime": "test_runtime_*.py test_recordings*.py test_openings.py test_each*.py test_explained.py",
     "semantics": "test_semantics_*.py test_diagrams.py test_runtime_episodes.py test_openings.py",
     "interfaces/serve": "test_serve.py test_serve_browser.py",

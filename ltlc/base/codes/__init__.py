@@ -170,6 +170,7 @@ CODES: dict[str, Code] = {
     "LTL843": Code("no-parameter", "The file has no `?`"),
     "LTL850": Code("no-place", "Messages were ignored: there were more ids than an `each` keeps", WARNING),
     "LTL851": Code("no-evidence", "Evidence does not cover a property", NOTE),
+    "LTL852": Code("rules-not-checked", "Rules of a pack were not checked", NOTE),
     "LTL810": Code("bag-metadata", "The metadata of a bag cannot be used"),
     "LTL811": Code("damaged-bag", "A bag is damaged, or is not a bag"),
     "LTL812": Code("missing-messages", "Some of a bag's messages were not read"),

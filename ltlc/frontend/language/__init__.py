@@ -88,16 +88,16 @@ def types_for(
         return MessageTypes(shipped()), []
     from ltlc.inputs.recordings.bags.known import message_types
 
-    types, bad_paths = message_types(message_paths, recordings, partial(_named_types, source))
+    types, bad_paths = message_types(message_paths, recordings, partial(_declared_types, source))
     return types, [_bad_path(source, bad) for bad in bad_paths]
 
 
-def _named_types(source: Source) -> list[str]:
-    """The names of message types in the declarations of `source`."""
+def _declared_types(source: Source) -> list[tuple[str, str]]:
+    """The topics in the declarations of `source`, each with the name of its message type."""
     tree, _ = parse(source)
     declared = [part for command in tree.commands for part in getattr(command, "attributes", [command])]
-    types = [part.type.text for part in declared if isinstance(part, Declaration | ObjectFromTopic)]
-    return [text.partition(".")[0].partition("[")[0] for text in types]
+    found = [part for part in declared if isinstance(part, Declaration | ObjectFromTopic)]
+    return [(part.topic.text, part.type.text.partition(".")[0].partition("[")[0]) for part in found]
 
 
 def in_order(diagnostics: list[Diagnostic]) -> list[Diagnostic]:

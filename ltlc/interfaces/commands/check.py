@@ -15,10 +15,19 @@ from ltlc.automata import Budget, SpotMissing
 from ltlc.base.codes import diagnostic
 from ltlc.base.diagnostics import Diagnostic, Severity
 from ltlc.base.render import concise
-from ltlc.frontend.language import STDIN, read_source
+from ltlc.frontend.language import STDIN
 from ltlc.interfaces.api.check import Check, check_of, unread_topic
 from ltlc.interfaces.commands import arguments
-from ltlc.interfaces.commands.common import FINDING, OK, UNUSABLE, examine, failure, report, unusable
+from ltlc.interfaces.commands.common import (
+    FINDING,
+    OK,
+    UNUSABLE,
+    examine,
+    failure,
+    read_specification,
+    report,
+    unusable,
+)
 from ltlc.interfaces.commands.fix import NotFixedError, fix_source, show_difference
 from ltlc.interfaces.commands.sources import found_in
 from ltlc.interfaces.commands.watching import add_watch, watched
@@ -111,7 +120,7 @@ def _check(path: Path, options: argparse.Namespace, ids: dict[str, str]) -> tupl
     Those `ids` of requirements have been given, each in a file; its own are added. Raises SpotMissing, NotFixedError
     and UnreadTopicError.
     """
-    source, fixes = read_source(path), 0
+    source, fixes = read_specification(path, options.msg_path, options.recording), 0
     if options.fix and not isinstance(source, Diagnostic):
         source, fixes = fix_source(path, source, options)
     budget = Budget(*options.budget)

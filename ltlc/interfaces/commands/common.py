@@ -25,6 +25,9 @@ OK, FINDING, UNUSABLE, UNDECIDED = 0, 1, 2, 3
 """Exit codes: all well; a finding; unusable input or usage; nothing violated, but something still open, not started or
 not decided."""
 
+RULES = "@"
+"""What is named so is no file, but a rule pack: `@px4`."""
+
 ABOUT_FILES = "LTL9"
 """What codes begin with for files that cannot be read, or are not specifications."""
 
@@ -90,7 +93,7 @@ def compile_file(
     encoding, budget = ENCODINGS[options.encoding], Budget(*options.budget)
     try:
         with progress("making monitors" if analyses is None else "checking", options.quiet) as watch:
-            source = read_source(options.specification)
+            source = read_specification(options.specification, options.msg_path, recordings)
             prepared = prepare(source, options.msg_path, encoding, budget, watch, recordings, analyses)
     except UnusableInput as error:
         report(without_notes(error.diagnostics))
@@ -99,6 +102,19 @@ def compile_file(
         return unusable(str(error))
     report(without_notes(prepared.diagnostics))
     return prepared
+
+
+def read_specification(
+    path: Path, message_paths: Sequence[str], recordings: Sequence[Path] = ()
+) -> Source | Diagnostic:
+    """The text of the file at `path`, or of the rules called so that are about `recordings`, or why there is none."""
+    if not str(path).startswith(RULES):
+        return read_source(path)
+    from ltlc.rules.about import specification
+
+    source, notes = specification(str(path), message_paths, recordings)
+    report(notes)
+    return source
 
 
 def overwritten(outputs: Sequence[Path | None], inputs: Sequence[str | Path]) -> Path | None:

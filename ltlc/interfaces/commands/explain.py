@@ -14,11 +14,12 @@ from ltlc.analysis.explanation import CLASSES, Explanation, explain
 from ltlc.analysis.wording import listed
 from ltlc.automata import Budget, SpotMissing
 from ltlc.base.codes import find, page
+from ltlc.base.diagnostics import Diagnostic
 from ltlc.base.render.table import example_lines
-from ltlc.frontend.language import load
+from ltlc.frontend.language import load_text
 from ltlc.frontend.language.suppression import unsuppressed
 from ltlc.interfaces.commands import arguments
-from ltlc.interfaces.commands.common import OK, failure, report, unusable
+from ltlc.interfaces.commands.common import OK, failure, read_specification, report, unusable
 from ltlc.interfaces.commands.progress import progress
 from ltlc.semantics.encodings import ENCODINGS
 from ltlc.semantics.verdicts import Verdict
@@ -46,13 +47,18 @@ def run(options: argparse.Namespace) -> int:
         return OK
     if re.fullmatch(r"LTL\d+", options.subject.upper()) and not Path(options.subject).exists():
         return unusable(f"no diagnostic is called {options.subject}")
-    specification, diagnostics = load(options.subject, options.msg_path, ENCODINGS[options.encoding])
+    encoding = ENCODINGS[options.encoding]
+    source = read_specification(Path(options.subject), options.msg_path)
+    if isinstance(source, Diagnostic):
+        report([source])
+        return failure([source])
+    specification, diagnostics = load_text(source, options.msg_path, encoding)
     if specification is None:
         report(unsuppressed(diagnostics))
         return failure(diagnostics)
     try:
         with progress("explaining", options.quiet) as watch:
-            study = study_of(specification, ENCODINGS[options.encoding], Budget(*options.budget))
+            study = study_of(specification, encoding, Budget(*options.budget))
             explanations = explain(study, Budget(*options.budget), watch)
     except SpotMissing as error:
         return unusable(str(error))

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from ltlc.automata import SpotMissing
+from ltlc.base.diagnostics import Diagnostic
 from ltlc.base.files import write_text
 from ltlc.base.source import Source
 from ltlc.frontend.language import types_for
@@ -17,7 +18,7 @@ from ltlc.frontend.starter.topics import MalformedLineError, Topic, listed, reco
 from ltlc.inputs.recordings import RecordingError
 from ltlc.inputs.recordings.bags import is_bag
 from ltlc.interfaces.commands import arguments
-from ltlc.interfaces.commands.common import OK, UNUSABLE, report, unusable, unwritable
+from ltlc.interfaces.commands.common import OK, RULES, UNUSABLE, read_specification, report, unusable, unwritable
 from ltlc.monitoring.measuring.measure import measure
 
 
@@ -31,6 +32,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="a bag, .ulg, .csv, .jsonl or .parquet; without it, the output of `ros2 topic list -t` is read from stdin",
     )
     parser.add_argument(
+        "--pack",
+        metavar="NAME",
+        help="write the rules of a pack, such as px4, to be changed; with a RECORDING, those that it has messages for",
+    )
+    parser.add_argument(
         "-o", "--output", type=Path, metavar="FILE", help="a file that does not exist yet (default: stdout)"
     )
     arguments.add_message_paths(parser)
@@ -40,6 +46,13 @@ def run(options: argparse.Namespace) -> int:
     """Write a specification about the topics of a recording, or of those on standard input."""
     if options.output is not None and options.output.exists():
         return unusable(f"{options.output} already exists and is not overwritten")
+    if options.pack:
+        recordings = [options.recording] if options.recording else []
+        source = read_specification(Path(RULES + options.pack), options.msg_path, recordings)
+        if isinstance(source, Diagnostic):
+            report([source])
+            return UNUSABLE
+        return _write(source.text, options.output)
     if options.recording is None and sys.stdin.isatty():
         return unusable("give a recording, or the topics on standard input: `ros2 topic list -t | ltlc new`")
     try:

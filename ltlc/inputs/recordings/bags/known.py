@@ -7,28 +7,32 @@ from pathlib import Path
 
 from ltlc.inputs.messages.definitions import BadPath, Message, MessageTypes, shipped
 from ltlc.inputs.messages.folders import files_below, read_folder
-from ltlc.inputs.messages.texts import defined
+from ltlc.inputs.messages.texts import defined, full_name
 from ltlc.inputs.recordings import open_recording
 from ltlc.inputs.recordings.bags import BagRecording
-from ltlc.inputs.recordings.bags.folders import is_bag
-from ltlc.inputs.recordings.bags.messages import Topic
+from ltlc.inputs.recordings.bags.folders import is_bag, is_flight_log, opened
+from ltlc.inputs.recordings.bags.messages import PX4_MESSAGES, Topic
 from ltlc.inputs.recordings.rows import RecordingError
+
+Declared = Callable[[], Sequence[tuple[str, str]]]
+"""Gives the topics of declarations, each with the name of its type."""
 
 
 def message_types(
-    paths: Sequence[str] = (), recordings: Iterable[Path] = (), named: Callable[[], Sequence[str]] = list
+    paths: Sequence[str] = (), recordings: Iterable[Path] = (), declared: Declared = list
 ) -> tuple[MessageTypes, list[BadPath]]:
     """The messages of Jazzy, those that the bags among `recordings` define, and those below `paths`; the later win.
 
-    Also what could not be read; a recording only if a type is not known otherwise. Types that are `named` are looked
-    for in all bags. What is recorded may lack constants, which are in no message: these stay as they are.
+    Also what could not be read; a recording only if a type is not known otherwise. Types that are `declared`, each
+    after its topic, are looked for in all bags. What is recorded may lack constants, which are in no message: these
+    stay as they are.
     """
     given, problems = given_messages(paths)
     known = shipped()
-    recorded, unread = _recorded(recordings, named, MessageTypes({**known, **given}))
+    recorded, unread = _recorded(recordings, declared, MessageTypes({**known, **given}))
     fuller = {name: _with_constants(message, known.get(name)) for name, message in recorded.items()}
     types = MessageTypes({**known, **fuller, **given})
-    if unread and not all(types.find(name) for name in named()):
+    if unread and not all(types.find(name) for _, name in declared()):
         problems += unread
     return types, problems
 
@@ -85,23 +89,33 @@ def _read_bag(path: Path) -> tuple[dict[str, Message], list[BadPath]]:
     return found, [] if found else [BadPath(str(path), "is a bag that defines no messages")]
 
 
+def _read_log(path: Path, declared: Iterable[tuple[str, str]]) -> tuple[dict[str, Message], list[BadPath]]:
+    """What the flight log at `path` defines, also under the names that the types of its topics have where declared."""
+    types = {topic: full_name(name if "/" in name else f"{PX4_MESSAGES}/{name}") for topic, name in declared}
+    try:
+        with opened(path, types) as log:
+            return messages_in(log.topics.values()), []
+    except RecordingError as error:
+        return {}, [BadPath(str(path), f"cannot be read: {error.diagnostic.message}")]
+
+
 def _recorded(
-    paths: Iterable[Path], named: Callable[[], Sequence[str]], types: MessageTypes
+    paths: Iterable[Path], declared: Declared, types: MessageTypes
 ) -> tuple[dict[str, Message], list[BadPath]]:
     """What the bags among `paths` define, of which the earlier win; with what cannot be read.
 
-    The first is always looked at, the others until all types that are `named` are known, beside those in `types`.
+    The first is always looked at, the others until all types that are `declared` are known, beside those in `types`.
     """
     found: dict[str, Message] = {}
     unread: list[BadPath] = []
     names: Sequence[str] = ()
     for number, path in enumerate(filter(is_bag, paths)):
         if number:
-            names = names or named()
+            names = names or [name for _, name in declared()]
             known = MessageTypes({**types.messages, **found})
             if all(known.find(name) for name in names):
                 break
-        more, problems = _read_bag(path)
+        more, problems = _read_log(path, declared()) if is_flight_log(path) else _read_bag(path)
         found = more | found
         unread += problems
     return found, unread

@@ -22,6 +22,9 @@ LATEST = 2**63 - 1
 LARGEST = 1 << 27
 """No message is larger, and no chunk of messages; what claims to be, unpacked or not, is not read."""
 
+PX4_MESSAGES = "px4_msgs"
+"""The package that defines the messages of PX4."""
+
 FEW = 1 << 16
 """So many views of data there are at once."""
 

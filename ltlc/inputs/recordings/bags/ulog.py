@@ -26,7 +26,16 @@ from ltlc.inputs.messages.texts import text_of
 from ltlc.inputs.recordings.bags import ulog_records as records
 from ltlc.inputs.recordings.bags.chunked import Message
 from ltlc.inputs.recordings.bags.mcap_records import Channel, Contents, Schema
-from ltlc.inputs.recordings.bags.messages import LATEST, Batch, Messages, Topic, batch_of, gathered, span_of
+from ltlc.inputs.recordings.bags.messages import (
+    LATEST,
+    PX4_MESSAGES,
+    Batch,
+    Messages,
+    Topic,
+    batch_of,
+    gathered,
+    span_of,
+)
 from ltlc.inputs.recordings.bags.ulog_layout import LITTLE_ENDIAN, TYPES, Layout, is_padding
 from ltlc.inputs.recordings.bags.ulog_records import BODY, MICROSECOND, DamageError
 from ltlc.inputs.recordings.blocks import Array, Places
@@ -230,4 +239,4 @@ def _in_order(found: Mapping[str, Messages]) -> dict[str, Messages]:
 @cache
 def _type_of(name: str) -> str:
     """The type that PX4 has for a topic or for a format inside of others: `px4_msgs/msg/BatteryStatus`."""
-    return "px4_msgs/msg/" + "".join(part[:1].upper() + part[1:] for part in name.split("_"))
+    return f"{PX4_MESSAGES}/msg/" + "".join(part[:1].upper() + part[1:] for part in name.split("_"))

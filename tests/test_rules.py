@@ -1,0 +1,141 @@
+"""Rule packs: each rule is silent on its passing example and finds its violating one, at the time that this says."""
+
+from __future__ import annotations
+
+import json
+import struct
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import pytest
+from ulog_support import PRIMITIVES, LogWriter
+
+from ltlc import rules
+from ltlc.base.source import Source
+from ltlc.cli import main
+from ltlc.frontend.layout import layout
+
+FIXTURES = Path(__file__).parent / "fixtures" / "rules"
+FLIGHTS = Path(__file__).parents[2] / "shared" / "data" / "ulog"
+NAMES = [f"{pack}/{rule.name}" for pack in rules.packs() for rule in rules.pack(pack).rules]
+Rows = Sequence[tuple[float, float, float, str, dict[str, Any]]]
+
+
+def example(name: str) -> dict[str, Any]:
+    """The examples of a rule: rows from a time to another, every so many seconds, on a topic, with values."""
+    found: dict[str, Any] = json.loads((FIXTURES / f"{name}.json").read_text())
+    return found
+
+
+def log(path: Path, formats: Path, rows: Rows) -> Path:
+    """A flight log with these messages; fields without a value are zero, numbers that are null NaN."""
+    writer = LogWriter()
+    by_topic = dict(line.split(":") for line in formats.read_text().splitlines())
+    for topic, text in by_topic.items():
+        writer.format(topic, text)
+    topics = list(by_topic)
+    for number, topic in enumerate(topics):
+        writer.subscribe(topic, number)
+    found = [
+        (round(begin * 1e6 + k * step * 1e6), topic, values)
+        for begin, end, step, topic, values in rows
+        for k in range(round((end - begin) / step) + 1)
+    ]
+    for time, topic, values in sorted(found, key=lambda each: each[0]):
+        packed = b"".join(_packed(part, {"timestamp": time, **values}) for part in by_topic[topic].split(";") if part)
+        writer.message(topics.index(topic), packed)
+    return writer.save(path)
+
+
+def _packed(part: str, values: dict[str, Any]) -> bytes:
+    kind, _, name = part.partition(" ")
+    base, _, count = kind.partition("[")
+    numbers = values.get(name, [0] * int(count[:-1]) if count else 0)
+    each = [float("nan") if value is None else value for value in (numbers if count else [numbers])]
+    return struct.pack(f"<{len(each)}{PRIMITIVES[base]}", *each)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_rule_passes_what_it_should_and_finds_what_it_should(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], name: str
+) -> None:
+    formats, of = FIXTURES / name.partition("/")[0] / "formats", example(name)
+    passing = log(tmp_path / "passes.ulg", formats, of["passes"])
+    assert main(["run", f"@{name}", str(passing)]) == 0, capsys.readouterr()
+    violating = log(tmp_path / "violates.ulg", formats, of["violates"])
+    capsys.readouterr()
+    assert main(["run", f"@{name}", str(violating), "--format", "json"]) == 1
+    document = json.loads(capsys.readouterr().out)
+    first = [each["decided_at"]["time"] for each in document["properties"] if each["verdict"] == "violated"]
+    assert of["at"] in first
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_rule_says_in_english_what_it_is_and_where_it_is_from(name: str) -> None:
+    [rule] = rules.pack(name).rules
+    assert rule.properties.startswith("## ")
+    assert rule.properties.count("[id ") == rule.properties.count("##")
+    assert rule.properties.count('rationale "') == rule.properties.count("##")
+    assert layout(Source(name, rule.text)) == rule.text
+
+
+@pytest.mark.parametrize("name", rules.packs())
+def test_what_several_rules_define_is_the_same_and_every_rule_has_its_place_in_the_docs(name: str) -> None:
+    pack = rules.pack(name)
+    defined = [line for line in pack.text().splitlines() if line.startswith("decl ") or " = " in line.partition("#")[0]]
+    names = [line.split()[1] if line.startswith("decl ") else line.split()[0] for line in defined]
+    assert len(names) == len(set(names))
+    page = (Path(__file__).parents[1] / "docs" / "rules.md").read_text()
+    for rule in pack.rules:
+        english = next(line for line in rule.properties.splitlines() if line.startswith("##"))[3:]
+        assert f"| `{name}/{rule.name}` | {english}" in page
+
+
+def test_a_rule_about_what_is_not_in_the_log_is_reported_as_not_checked(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    formats = FIXTURES / "px4" / "formats"
+    rows: Rows = [(0, 3, 0.5, "vehicle_status", {"arming_state": 2}), (0, 3, 0.5, "cpuload", {"load": 0.2})]
+    flight = log(tmp_path / "flight.ulg", formats, rows)
+    assert main(["run", "@px4", str(flight)]) == 0
+    printed = capsys.readouterr()
+    assert "px4_cpu: presumably satisfied" in printed.out
+    assert "px4_gps_silent" not in printed.out
+    assert "rules that were not checked: `battery_cell`, no message on `/fmu/out/battery_status`; " in printed.err
+    assert main(["run", "@px4/gps_silent", str(flight)]) == 2
+    assert "none of the rules `@px4/gps_silent` is about this" in capsys.readouterr().err
+
+
+def test_the_rules_of_a_pack_are_written_to_be_changed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    formats, of = FIXTURES / "px4" / "formats", example("px4/battery_cell")
+    flight = log(tmp_path / "flight.ulg", formats, of["violates"])
+    props = tmp_path / "props.ltlc"
+    assert main(["new", "--pack", "px4", str(flight), "-o", str(props)]) == 0
+    text = props.read_text()
+    assert main(["run", str(props), str(flight)]) == 1
+    assert "px4_cell_voltage_least = 3.3" in text
+    assert "px4_gps" not in text
+    props.write_text(text.replace("px4_cell_voltage_least = 3.3", "px4_cell_voltage_least = 3.1"))
+    assert main(["run", str(props), str(flight)]) == 0
+    capsys.readouterr()
+
+
+def test_an_unknown_pack_or_rule_is_answered_with_those_that_there_are(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["check", "@px5"]) == 2
+    assert "the packs are `px4`" in capsys.readouterr().err
+    assert main(["check", "@px4/gps_acuracy"]) == 2
+    assert "did you mean `gps_accuracy`?" in capsys.readouterr().err
+
+
+@pytest.mark.skipif(not FLIGHTS.is_dir(), reason="there are no flight logs of others here")
+def test_on_flights_of_others_the_rules_name_the_failure_and_its_time_or_are_silent(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    assert main(["run", "@px4", str(FLIGHTS / "sample.ulg")]) == 0
+    capsys.readouterr()
+    assert main(["run", "@px4", str(FLIGHTS / "gps_interference.ulg"), "--format", "json"]) == 1
+    document = json.loads(capsys.readouterr().out)
+    found = {each["label"]: each for each in document["properties"] if each["verdict"] == "violated"}
+    assert found.keys() == {"px4_gps_accuracy", "px4_gps_satellites"}
+    assert {each["decided_at"]["time"] for each in found.values()} == {276.594637}
