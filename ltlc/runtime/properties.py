@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from itertools import pairwise
 from operator import attrgetter
 from typing import Any, Protocol
 
+from ltlc.dataclass import dataclass
 from ltlc.runtime.sampling import Excused, Value, Wanted
 from ltlc.semantics.verdicts import Verdict
 
