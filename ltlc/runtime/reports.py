@@ -146,6 +146,8 @@ def condition_text(property_: MonitoredProperty, condition: Condition) -> str:
         parts.append(f"the age is {span_text(condition.age)}")
     if condition.lasted is not None:
         parts.append(f"{span_text(condition.lasted)} so far")
+    if condition.ago is not None:
+        parts.append(f"last {span_text(condition.ago)} ago")
     if condition.element is not None:
         index, values = condition.element
         parts += [f"{name}[{index}] is {value_text(value)}" for name, value in values]
