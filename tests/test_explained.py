@@ -175,6 +175,12 @@ def test_what_has_not_held_long_enough_is_reported_with_how_long_it_has(
     assert report.session.tracks[0].verdict is not Verdict.VIOLATED
 
 
+def test_the_failing_state_calls_the_news_of_a_vector_as_the_author_does(tmp_path: Path) -> None:
+    (tmp_path / "run.csv").write_text("time,pos.x,pos.y,pos.z\n0,1,2,3\n")
+    text = "decl pos /p geometry_msgs/Vector3Stamped.vector\nnever (new pos and pos.y > 1)"
+    assert "  new pos: true\n" in Judge(*from_text(text)).judge(tmp_path / "run.csv").text()
+
+
 @given(STEPS)
 def test_what_has_not_held_of_late_is_reported_with_how_long_ago_it_did(
     tmp_path_factory: pytest.TempPathFactory, steps: list[tuple[int, bool, bool]]

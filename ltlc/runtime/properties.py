@@ -190,7 +190,8 @@ class MonitoredProperty:
     `held_edges` where at a clock step, through `decisions` about what `conditions`
     gives for the values that are read, and about `clocks`; all are empty where nothing
     violates the property. Of conditions about arrays, `elements` says what decides
-    them; `constants` are names of values of inputs. With a `slicing` it is judged for
+    them; `constants` are names of values of inputs, and `written` what the author calls
+    inputs by, where that is not their names. With a `slicing` it is judged for
     each id, and all of this is said of one slice. The `requirement` that it states is
     an object of JSON: its `id`, `text` and `attributes`; without any it is empty.
 
@@ -223,6 +224,7 @@ class MonitoredProperty:
     decisions: tuple[Decision, ...] = ()
     elements: tuple[Elements, ...] = ()
     constants: Constants = field(default_factory=dict)
+    written: Mapping[str, str] = field(default_factory=dict)
     slicing: SlicedBy | None = None
     requirement: Mapping[str, Any] = field(default_factory=dict)
 

@@ -107,7 +107,8 @@ def failure_text(property_: MonitoredProperty, failure: Failure, scale: Scale) -
     lines.append(f"  {property_.text}")
     lines.append("Failing state:")
     for name, value in failure.values:
-        lines.append(f"  {name}: {named_text(property_, name, value)}")
+        shown = property_.written.get(name, name)
+        lines.append(f"  {shown}: {named_text(property_, name, value)}")
     if failure.because:
         lines.append("Because:")
         lines += [f"  {condition_text(property_, c)}" for c in failure.because]
