@@ -196,7 +196,7 @@ def test_what_has_not_held_of_late_is_reported_with_how_long_ago_it_did(
             assert told == ([] if last is None else [time - last])
             assert not told or f"once v < 1 within 2 s: false, last {told[0]:g} s ago" in because(report)
             return
-        if near and not held and last + 2 < next((t for t in times if t > time), time):
+        if near and not held and last is not None and last + 2 < next((t for t in times if t > time), time):
             return  # time alone violates it, just past the bound
     assert report.session is not None
     assert report.session.tracks[0].verdict is not Verdict.VIOLATED
