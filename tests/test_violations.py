@@ -249,7 +249,9 @@ def test_text_says_so_if_later_violations_could_not_be_looked_for(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     exceeded = Exceeded(Limit.TIME, Budget())
-    monkeypatch.setattr("ltlc.monitoring.restarting.translate_all", lambda tasks, budget: [exceeded for _ in tasks])
+    monkeypatch.setattr(
+        "ltlc.monitoring.restarting.translate_all", lambda tasks, budget, known: [exceeded for _ in tasks]
+    )
     rows = [(0, True, False), (10, False, False), (20, True, False), (30, False, False)]
     (tmp_path / "run.csv").write_text("\n".join(["time,a,b", *(f"{t},{a},{b}".lower() for t, a, b in rows), ""]))
     report = Judge(*from_text(HEAD + "never a and not previously a")).judge(tmp_path / "run.csv")

@@ -6,7 +6,7 @@ judged as the body of `after MARK, P` is, where the mark is put at the first ins
 
 from __future__ import annotations
 
-from collections.abc import Container, Sequence
+from collections.abc import Container, Hashable, Sequence
 from dataclasses import replace
 from functools import cached_property
 
@@ -19,6 +19,7 @@ from ltlc.program.properties import machine_of
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.encodings import encode_from
 from ltlc.semantics.ltl import Atom
+from ltlc.semantics.monitor import Monitor
 from ltlc.semantics.openings import scope_clocks
 from ltlc.semantics.properties import After
 from ltlc.semantics.timed_atoms import Age, Late, News, timed_atoms
@@ -26,6 +27,9 @@ from ltlc.semantics.verdicts import Verdict
 
 MARK = "from here on"
 """The atom from which on a property is judged anew."""
+
+_KNOWN: dict[Hashable, Monitor | Exceeded] = {}
+"""The monitors made so far, by their shapes: who judges many recordings judges by the same properties."""
 
 
 @dataclass(frozen=True)
@@ -52,7 +56,7 @@ def restarting(compiled: Sequence[Compiled]) -> list[Restarting]:
     tasks = [Task(f, _with_mark(each.specification.alphabet)) for f, each in zip(formulas, reading, strict=True)]
     return [
         Restarting(each.specification, each.encoding, formula, outcome)
-        for each, formula, outcome in zip(reading, formulas, translate_all(tasks, Budget()), strict=True)
+        for each, formula, outcome in zip(reading, formulas, translate_all(tasks, Budget(), known=_KNOWN), strict=True)
         if not isinstance(outcome, Exceeded)
     ]
 
