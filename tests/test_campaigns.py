@@ -191,6 +191,17 @@ def test_one_recording_is_told_as_it_always_was(capsys: pytest.CaptureFixture[st
 
 
 @pytest.mark.usefixtures("drives")
+def test_one_blank_line_comes_before_the_table_whatever_the_last_recording_shows(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    for last in ("drives/a.csv", "drives/b.csv"):
+        _, out, _ = ran(capsys, "drives/late/c.csv", last)
+        before, _, _ = out.partition("property  violated")
+        assert before.endswith("\n\n")
+        assert not before.endswith("\n\n\n")
+
+
+@pytest.mark.usefixtures("drives")
 def test_several_have_a_line_each_then_a_table_and_a_summary(capsys: pytest.CaptureFixture[str]) -> None:
     code, out, _ = ran(capsys, "drives", "drives/a.csv")
     assert code == 1

@@ -189,6 +189,14 @@ def test_what_cannot_be_counted_is_said(text: str, said: str) -> None:
     assert said in diagnostic.message
 
 
+def test_a_rate_that_is_compared_otherwise_is_answered_with_both_limits() -> None:
+    _, diagnostics = load_text(Source("props.txt", f"{DECLARED}always rate(x) <= 4 Hz over 500 ms"))
+    [told] = [each for each in diagnostics if each.code == "LTL232"]
+    upper = "never once new x 3 times within 500 ms"
+    assert told.help == f"for a lower limit, write `>= 4 Hz`; for an upper limit, `{upper}`"
+    from_text(DECLARED + upper)
+
+
 def test_rate_is_a_name_where_no_frequency_is_asked_for() -> None:
     from_text("decl rate /t std_msgs/Float64.data\nnever rate > 3 and rate(rate) >= 4 Hz over 500 ms\n")
 

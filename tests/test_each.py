@@ -277,7 +277,11 @@ def test_properties_of_slices_and_of_the_whole_run_are_not_held_against_each_oth
 def test_a_comparison_refuses_by_name_what_is_judged_for_each_id() -> None:
     with pytest.raises(UnusableInput) as refused:
         ltlc.compare(f"{HEAD}p: each g of id: never kind == 2")
-    assert [each.code for each in refused.value.diagnostics] == ["LTL711"]
+    [told] = refused.value.diagnostics
+    assert (told.code, told.help) == ("LTL711", "`ltlc run` and `ltlc.monitor` judge it; for known names, use `forall`")
+    with pytest.raises(UnusableInput) as refused:
+        ltlc.compare(f"{HEAD}p: each new id: never kind == 2")
+    assert refused.value.diagnostics[0].help == "`ltlc run` and `ltlc.monitor` judge it"
 
 
 GOALS = """time,goal,status

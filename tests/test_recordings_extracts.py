@@ -251,6 +251,14 @@ def test_violations_of_one_property_whose_parts_overlap_share_a_file(
     assert len(list(Path("cut").iterdir())) == 4
 
 
+def test_the_last_of_violations_that_are_close_together_is_not_written_as_the_first(
+    here: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    mcap(here / "a.mcap", drive([0, 1, 2, 2.0001, 2.0002, 3], fast=[2, 2.0002]))
+    _, told = ran(capsys, "p.ltlc", "a.mcap", "--cut", "cut")
+    assert "slow at +2 s and 1 more up to +2.0002 s" in told
+
+
 def test_an_extract_goes_back_to_when_something_began_to_be_owed(
     here: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -88,7 +88,8 @@ def _is_rate(checker: Checker, node: syntax.Rate, duration: Nanoseconds) -> bool
         help = "omit `_rate_`, or use the age of the last message: `age(s)`"
     elif node.operator.text not in (">=", "<"):
         place, message = node.operator.span, "a rate is compared with `>=` or `<`"
-        help = "for an upper limit, write `never once new s N times within D`"
+        upper = f"never once new {checker.written(node.signal)} {count // 1 + 1} times within {duration_text(duration)}"
+        help = f"for a lower limit, write `>= {node.hertz.text} Hz`; for an upper limit, `{upper}`"
     elif count.denominator > 1 or not 0 < count <= MAX_HISTORY:
         place = node.hertz.span
         message = f"{node.hertz.text} Hz over {duration_text(duration)} are {float(count):g} messages"

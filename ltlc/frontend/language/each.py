@@ -171,14 +171,20 @@ def speaks_of_its_ids(checker: Checker, node: syntax.EachOf, found: PropertySpec
 
 def refusals(specification: Specification, doing: str) -> list[Diagnostic]:
     """Why nothing is done with properties of each id or message where `doing` so, as `mined`, knows whole runs only."""
-    help = "`ltlc run` and `ltlc.monitor` judge it; for known names, use `forall`"
     return [
         diagnostic(
-            "LTL711", specification.source, each.span, f"{reason}; such properties cannot be {doing} yet", help=help
+            "LTL711",
+            specification.source,
+            each.span,
+            f"{reason}; such properties cannot be {doing} yet",
+            help=f"`ltlc run` and `ltlc.monitor` judge it{_FOR_IDS if isinstance(each.slicing, Slicing) else ''}",
         )
         for each in specification.properties
         if (reason := _is_for_rows_only(each))
     ]
+
+
+_FOR_IDS = "; for known names, use `forall`"
 
 
 def _is_for_rows_only(of: PropertySpecification) -> str:

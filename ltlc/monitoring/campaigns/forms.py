@@ -29,9 +29,13 @@ class Form(Protocol):
 class Text:
     """A line for each recording, errors as that of one recording has them, then a table and a line for all."""
 
+    def __init__(self) -> None:
+        self._has_blank_line = False
+
     def add(self, outcome: Outcome) -> str:
         """The recording's line and errors."""
         errors = [_placed(each.figure, outcome.place.name) for each in outcome.properties if each.figure]
+        self._has_blank_line = bool(errors)
         return "\n".join([brief(outcome), *errors]) + "\n"
 
     def end(self, tally: Tally, found: Found) -> str:
@@ -42,7 +46,7 @@ class Text:
             for each in tally.properties.values()
         ]
         table = aligned([head, *rows], right=range(1, len(head))) if rows else []
-        lines = ["", *table, "", "; ".join([tally.sentence(), *remarks(found)])]
+        lines = [*([] if self._has_blank_line else [""]), *table, "", "; ".join([tally.sentence(), *remarks(found)])]
         return "".join(f"{line}\n" for line in lines)
 
 

@@ -39,7 +39,7 @@ def extracts(session: Session, before: Nanoseconds, after: Nanoseconds) -> Itera
     for name, track in zip(names, session.tracks, strict=True):
         found = _violations(track)
         parts = _joined(found, before, after)
-        of_property = scale.among(part[0].moment.time for part in parts)
+        of_property = scale.among(end.moment.time for part in parts for end in (part[0], part[-1]))
         for part in parts:
             first, last = part[0].moment.time, part[-1].moment.time
             when = of_property.text(first)
