@@ -19,6 +19,7 @@ import z3  # noqa: TID251
 from ltlc.analysis.bounds import bounds
 from ltlc.analysis.elements import Elements, are_plain
 from ltlc.analysis.groups import definition_inputs, key, source
+from ltlc.analysis.zones import OF_ZONES, zone_facts
 from ltlc.specification.evaluation import Single, Value
 from ltlc.specification.expressions import (
     Arithmetic,
@@ -88,16 +89,19 @@ class Translator:
         linked: bool = False,
         exact_norms: bool = False,
         taken: Taken | None = None,
+        knows_zones: bool = False,
     ) -> None:
         """`related` are the values whose connection with a signal that is computed from them matters.
 
-        Unless `exact_norms`, of a norm only the linear bounds are known: between the largest component and their sum.
+        Unless `exact_norms`, of a norm only the linear bounds are known: between the largest component and their sum;
+        of a distance from a zone, only where it is 0. Unless it `knows_zones`, neither that nor where a point is.
         """
         self._facts: list[Term] = []
         self.step = 0
         self._related = related
         self._linked = linked
         self._exact_norms = exact_norms
+        self._knows_zones = knows_zones
         self._taken = taken or {}
         self._folds: dict[Hashable, dict[Function, Term]] = {}
         self._elements: dict[Hashable, Elements] = {}
@@ -303,6 +307,8 @@ class Translator:
             self._facts.append(z3.Implies(arguments[0] >= 0, result * result == arguments[0]))
         if function is Function.NORM:
             self._facts.extend(self._norm(result, arguments))
+        if function in OF_ZONES and self._knows_zones:
+            self._facts.extend(zone_facts(function, result, arguments, self._exact_norms))
         return result
 
     def _norm(self, norm: Term, components: Sequence[Term]) -> Iterator[Term]:

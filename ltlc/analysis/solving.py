@@ -48,12 +48,17 @@ def valuations(atoms: Sequence[Atom]) -> list[Letter] | None:
 
 
 def _translated(
-    atoms: Sequence[Atom], linked: bool = False, exact_norms: bool = False, taken: Taken | None = None
+    atoms: Sequence[Atom],
+    linked: bool = False,
+    exact_norms: bool = False,
+    taken: Taken | None = None,
+    knows_zones: bool = False,
 ) -> tuple[Translator, Any]:
     values = [value for atom in atoms for value in reads_of(atom.condition)]
     solver = z3.Solver()
     solver.set("rlimit", WORK)
-    return Translator(frozenset(key(value) for value in values), linked, exact_norms, taken), solver
+    related = frozenset(key(value) for value in values)
+    return Translator(related, linked, exact_norms, taken, knows_zones), solver
 
 
 def realise(atoms: Sequence[Atom], word: Word, linked: bool, taken: Taken) -> list[Values] | None:
@@ -69,7 +74,7 @@ def realise(atoms: Sequence[Atom], word: Word, linked: bool, taken: Taken) -> li
 
 def _realise(atoms: Sequence[Atom], word: Word, linked: bool, exact_norms: bool, taken: Taken) -> list[Values] | None:
     inputs = [value for atom in atoms for value in reads_of(atom.condition)]
-    translator, solver = _translated(atoms, linked, exact_norms, taken)
+    translator, solver = _translated(atoms, linked, exact_norms, taken, knows_zones=True)
     for translator.step, letter_ in enumerate(word):
         for atom in atoms:
             condition = translator.condition(atom.condition)
