@@ -25,7 +25,11 @@ def explained(text: str) -> Explanation:
     ("text", "begins"),
     [
         ("never cx > 1", "when /cx has delivered a value that it reads"),
-        ("never cx > @{hps, -1}", "when /cx and /hps have each delivered a value that it reads"),
+        ("never cx > hps", "when /cx and /hps have each delivered a value that it reads"),
+        ("never cx > @{hps, -1}", "when /cx has delivered a value and /hps has delivered 2 values that it reads"),
+        ("never cx > max(@{cx, -9:})", "when /cx has delivered 10 values that it reads"),
+        ("never cx > @{cx, -1 else 0}", "when /cx has delivered a value that it reads"),
+        ("_rate_ = 10 never cx > @{cx, -1}", "when /cx has delivered a value that it reads"),
         (
             "always (new cx and cx > 0 implies hps > 1)",
             "when /hps has delivered a value that it reads; it does not wait for /cx",

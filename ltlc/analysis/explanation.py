@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from itertools import islice
+from typing import assert_never
 
 from ltlc.analysis.english import English
 from ltlc.analysis.examples import Example, example_of
@@ -18,6 +19,7 @@ from ltlc.semantics.monitor import Monitor
 from ltlc.semantics.verdicts import Verdict
 from ltlc.semantics.words import Word
 from ltlc.specification.arrivals import waited_for
+from ltlc.specification.expressions import Current, Input, New, Past, Recent, Slope
 from ltlc.specification.specification import PropertySpecification, Slicing, topics, topics_of
 
 MOST_WORDS = 50
@@ -73,12 +75,14 @@ def explain(study: Study, budget: Budget, watch: Watch | None = None) -> list[Ex
     jobs = [partial(_explain, study, subject) for subject in study.subjects]
     outcomes = run_all(jobs, budget, budget.seconds, watch)
     return [
-        replace(_in_words(subject), limit=str(outcome)) if isinstance(outcome, Exceeded) else outcome
+        replace(_in_words(study, subject), limit=str(outcome)) if isinstance(outcome, Exceeded) else outcome
         for subject, outcome in zip(study.subjects, outcomes, strict=True)
     ]
 
 
-def _in_words(subject: Subject, class_: str = "", runs: Mapping[Verdict, Example | None] | None = None) -> Explanation:
+def _in_words(
+    study: Study, subject: Subject, class_: str = "", runs: Mapping[Verdict, Example | None] | None = None
+) -> Explanation:
     specification, monitor = subject.specification, subject.monitor
     words, found = English(specification), runs or {}
     return Explanation(
@@ -87,7 +91,7 @@ def _in_words(subject: Subject, class_: str = "", runs: Mapping[Verdict, Example
         words.sentence(),
         tuple(words.atoms()),
         topics(specification),
-        _beginning(specification),
+        _beginning(specification, has_ticks=study.specification.rate is not None),
         class_,
         len(monitor.verdicts) if monitor else None,
         tuple(v for v in CAPTIONS if v in monitor.verdicts) if monitor else (),
@@ -108,16 +112,34 @@ def _stated(specification: PropertySpecification) -> str:
             return specification.text
 
 
-def _beginning(specification: PropertySpecification) -> str:
-    """When a run of the property begins, and what it does not wait for."""
-    every, waited = topics(specification), waited_for(specification)
-    spoken = list(dict.fromkeys(topic for wanted in waited for topic in topics_of(wanted.signal)))
+def _beginning(specification: PropertySpecification, *, has_ticks: bool) -> str:
+    """When a run of the property begins, and what it does not wait for; samples are messages, unless it `has_ticks`."""
+    every, spoken = topics(specification), dict[str, int]()
+    for wanted in waited_for(specification):
+        of = topics_of(wanted.signal)
+        count = 1 if has_ticks or len(of) > 1 else _samples(wanted)
+        spoken |= {topic: max(count, spoken.get(topic, 1)) for topic in of}
     if not spoken:
         return "with the session, whether or not any message arrives"
     silent = [topic for topic in every if topic not in spoken]
     rest = f"; it does not wait for {listed(silent)}" if silent else ""
-    several = len(spoken) > 1
-    return f"when {listed(spoken)} {'have each' if several else 'has'} delivered a value that it reads{rest}"
+    if len(spoken) > 1 and set(spoken.values()) == {1}:
+        return f"when {listed(list(spoken))} have each delivered a value that it reads{rest}"
+    told = [f"{topic} has delivered {'a value' if n == 1 else f'{n} values'}" for topic, n in spoken.items()]
+    return f"when {listed(told)} that it reads{rest}"
+
+
+def _samples(wanted: Input) -> int:
+    """How many samples of its signal there have to be."""
+    match wanted:
+        case Past(_, samples) | Recent(_, samples):
+            return samples + 1
+        case Slope():
+            return 2
+        case Current() | New():
+            return 1
+        case _:
+            assert_never(wanted)
 
 
 def _explain(study: Study, subject: Subject) -> Explanation:
@@ -125,7 +147,7 @@ def _explain(study: Study, subject: Subject) -> Explanation:
 
     class_ = temporal_class(subject.formula, subject.alphabet).value
     shows = subject.monitor if not subject.counts else None
-    return _in_words(subject, class_, _examples(study, subject, shows) if shows else {})
+    return _in_words(study, subject, class_, _examples(study, subject, shows) if shows else {})
 
 
 def _examples(study: Study, subject: Subject, monitor: Monitor) -> dict[Verdict, Example | None]:
