@@ -23,7 +23,8 @@ from ltlc.monitoring.columns import arrays, bits, follow, kept, tables, threshol
 from ltlc.monitoring.columns import session as columns_session
 from ltlc.monitoring.columns.prepared import prepare_all
 from ltlc.monitoring.columns.session import ByBlocks
-from ltlc.monitoring.later import JudgedTrack, all_violations, can_recur
+from ltlc.monitoring.later import JudgedTrack, all_violations
+from ltlc.monitoring.restarting import restarting
 from ltlc.runtime import documents, reports
 from ltlc.runtime.episodes import Episodes
 from ltlc.runtime.properties import MonitoredProperty
@@ -344,13 +345,18 @@ def judged(drawn: Drawn, observe: Callable[[], Observer] | None = None) -> tuple
     given = {name for part in drawn.parts for row in part for name in row.values} | set(KINDS) | {"v", "w"}
     given -= set(PARTS) - {"robot.position.x"}
     plan = load_plan(compiled, specification, given)
-    recurring = {each.specification.label for each in compiled if can_recur(each)}
+    again = restarting(compiled)
+    by_label = {each.label: each for each in load_plan(again, specification, given).properties}
+    prepared = zip(again, prepare_all(again, specification.source), strict=True)
+    prepared_again = {each.specification.label: of for each, of in prepared}
 
     def track(property_: MonitoredProperty, keep: bool, observer: Observer | None) -> Track:
-        return JudgedTrack(property_, keep, observer, property_.label in recurring)
+        found = by_label.get(property_.label)
+        return JudgedTrack(property_, keep, observer, property_.slicing is None, again=found)
 
     reference = ByRows(Session(plan, observe=observe, make=track))
-    fast = ByBlocks(Session(plan, observe=observe, make=track), prepare_all(compiled, specification.source))
+    of = prepare_all(compiled, specification.source)
+    fast = ByBlocks(Session(plan, observe=observe, make=track), of, prepared_again)
     wanted = [s.name for s in plan.signals if s.name in given]
     found = blocks(drawn.parts, wanted)
     for block in found:

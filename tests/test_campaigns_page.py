@@ -81,6 +81,14 @@ def test_it_says_what_was_never_triggered_in_any_recording(capsys: pytest.Captur
     assert any("line 3: " in line for line in after[after.index("Not judged to the end") :])
 
 
+def test_what_a_message_quotes_is_shown_as_code(drives: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (drives / "worded.csv").write_text("time,speed,distance\n0,fast,5\n")
+    ran(capsys, "drives", "--summary", "s.html")
+    written = re.sub(r"<style>.*?</style>", "", Path("s.html").read_text(encoding="utf-8"), flags=re.DOTALL)
+    assert "column <code>speed</code>: <code>fast</code> is not a number" in written
+    assert "`" not in written
+
+
 DRIVE = "time,speed,distance\n10,1,5\n11,{},5\n13,1,5\n15,{},5\n16,1,5\n20,1,5\n"
 
 
@@ -96,7 +104,7 @@ def test_a_timeline_marks_where_in_the_recording_the_property_is_violated(capsys
         [tuple(map(float, part)) for part in re.findall(r'class="bad" x="([\d.]+)" width="([\d.]+)"', cell)]
         for cell in re.findall(r"<svg.*?</svg>", written, re.DOTALL)
     ]
-    assert parts == [[(20, 40), (100, 20)], [(100, 20)], [(100, 2)]]
+    assert parts == [[(20, 40), (100, 20)], [(100, 20)], [(100, 20)]]
     assert written.count('<span class="soft">10 s</span>') == 3
 
 

@@ -20,8 +20,6 @@ from ltlc.dataclass import dataclass
 
 PROJECT = Path(__file__).parents[1]
 STANDING_ALONE = (
-    "ltlc/runtime",
-    "ltlc/semantics/verdicts.py",
     "ltlc/backends/ros2/node",
     "ltlc/assurance/evidence/recorded.py",
 )

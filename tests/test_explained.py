@@ -175,6 +175,39 @@ def test_what_has_not_held_long_enough_is_reported_with_how_long_it_has(
     assert report.session.tracks[0].verdict is not Verdict.VIOLATED
 
 
+def test_the_failing_state_calls_the_news_of_a_vector_as_the_author_does(tmp_path: Path) -> None:
+    (tmp_path / "run.csv").write_text("time,pos.x,pos.y,pos.z\n0,1,2,3\n")
+    text = "decl pos /p geometry_msgs/Vector3Stamped.vector\nnever (new pos and pos.y > 1)"
+    assert "  new pos: true\n" in Judge(*from_text(text)).judge(tmp_path / "run.csv").text()
+
+
+@given(STEPS)
+def test_what_has_not_held_of_late_is_reported_with_how_long_ago_it_did(
+    tmp_path_factory: pytest.TempPathFactory, steps: list[tuple[int, bool, bool]]
+) -> None:
+    text = "decl near /near Bool.data\nalways (near implies once v < 1 within 2 s)"
+    times = [*accumulate(gap for gap, _, _ in steps)]
+    rows = [{"time": time, "v": 2 - 2 * held, "near": near} for time, (_, held, near) in zip(times, steps, strict=True)]
+    report, last, was = judged(tmp_path_factory.mktemp("run"), text, *rows), None, False
+    for time, (_, held, near) in zip(times, steps, strict=True):
+        last, was = time if was or held else last, held
+        if near and (last is None or time - last > 2):
+            told = [each["ago"] for each in told_by(report) if "ago" in each]
+            assert told == ([] if last is None else [time - last])
+            assert not told or f"once v < 1 within 2 s: false, last {told[0]:g} s ago" in because(report)
+            return
+        if near and not held and last is not None and last + 2 < next((t for t in times if t > time), time):
+            return  # time alone violates it, just past the bound
+    assert report.session is not None
+    assert report.session.tracks[0].verdict is not Verdict.VIOLATED
+
+
+def test_what_has_held_of_late_and_must_not_is_reported_with_how_long_ago(tmp_path: Path) -> None:
+    rows = ({"time": time, "v": v} for time, v in ((0, 0), (1, 3), (2.5, 9)))
+    found = because(judged(tmp_path, "always (v > 8 implies not once v < 1 within 2 s)", *rows))
+    assert "once v < 1 within 2 s: true, last 1.5 s ago" in found
+
+
 def told_by(report: RunReport) -> list[dict[str, Any]]:
     found: list[dict[str, Any]] = report.document()["properties"][0]["decided_at"]["because"]
     return found

@@ -334,6 +334,10 @@ def test_of_a_clock_with_several_bounds_the_one_that_matters_is_named(
         ),
         ("after_until asked, late, eventually told within 1 s", "more than 1 s since asked opened the scope"),
         ("until late, eventually told within 1 s", "more than 1 s since the beginning"),
+        (
+            "after asked and not (told or once late), eventually told within 1 s",
+            'since the first "asked and not (told or once late)"',
+        ),
     ],
 )
 def test_reasons_name_what_a_clock_counts_from_as_a_person_would(tmp_path: Path, text: str, because: str) -> None:

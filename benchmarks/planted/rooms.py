@@ -16,7 +16,7 @@ ROOMS = {
     "analysis": "test_analysis_*.py",
     "interfaces/api": "test_api*.py test_commands_compare.py test_comparison_corpus.py test_comparison_pictures.py",
     "assurance": "test_assurance_*.py test_semantics_certificate.py test_each_code.py test_each_message_code.py",
-    "automata": "test_automata_*.py test_diagrams.py test_progression.py",
+    "automata": "test_automata_*.py test_diagrams.py test_progression.py test_violations.py",
     "backends": "test_backends_tools.py test_backends_time.py test_automata_package.py test_comparison_pictures.py",
     "backends/ament": "test_backends_ament.py",
     "backends/c": "test_backends_c.py test_backends_time.py test_assurance_reading_c.py test_each_c.py"

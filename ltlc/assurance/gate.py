@@ -128,7 +128,7 @@ def _judge_each(
 ) -> dict[int, Judgement | Exceeded]:
     """The judgement of each of `subjects`, by its number: its monitor and its code as jobs of their own."""
     jobs = [partial(half, subject, messages) for subject in subjects.values() for half in (_of_monitor, _of_code)]
-    halves = iter(run_all(jobs, budget, watch=watch and partial(_halved, watch)))
+    halves = iter(run_all(jobs, budget, watch=watch and partial(_halved, watch), patience=0))
     return {number: _joined(next(halves), next(halves)) for number in subjects}
 
 

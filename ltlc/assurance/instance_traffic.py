@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from ltlc.assurance.histories import Instant, Sample
 from ltlc.assurance.many_traffic import ManyTraffic
 from ltlc.assurance.replay import Id
-from ltlc.assurance.traffic import Event, Follower, Heard, Said, Settings
+from ltlc.assurance.traffic import Event, Followed, Follower, Heard, Said, Settings
 from ltlc.assurance.values import Samples
 from ltlc.compiler import Compiled
 from ltlc.semantics.durations import Nanoseconds
@@ -47,11 +47,11 @@ class InstancesFollower:
     """What all instances make of events; that with number 0 is the run without any."""
 
     def __init__(self, compiled: Compiled, traffic: InstanceTraffic, settings: Settings) -> None:
-        self._compiled = compiled
+        self._of = Followed(compiled, traffic.sources)
         self._traffic = traffic
         self._settings = settings
         self._events: list[Event] = []
-        self._instances = [InstanceFollower(compiled, traffic, settings)]
+        self._instances = [InstanceFollower(self._of, traffic, settings)]
 
     def dues(self) -> list[Nanoseconds]:
         """When clocks of instances expire."""
@@ -61,7 +61,7 @@ class InstancesFollower:
         """The steps that `event` leads to in each instance; in one that it opens, all before, too."""
         found: dict[Id, list[Judged | None]] = {n: one.take(event) for n, one in enumerate(self._instances)}
         if isinstance(event, Heard) and event.said.topic == self._traffic.opener:
-            one = InstanceFollower(self._compiled, self._traffic, self._settings)
+            one = InstanceFollower(self._of, self._traffic, self._settings)
             before = [step for earlier in self._events for step in one.take(earlier)]
             found[len(self._instances)] = [*before, *one.open(event)]
             self._instances.append(one)
@@ -72,8 +72,8 @@ class InstancesFollower:
 class InstanceFollower(Follower):
     """What one instance makes of the run; each message that may open one is a step of all."""
 
-    def __init__(self, compiled: Compiled, traffic: InstanceTraffic, settings: Settings) -> None:
-        super().__init__(compiled, traffic.sources, settings)
+    def __init__(self, of: Followed, traffic: InstanceTraffic, settings: Settings) -> None:
+        super().__init__(of, settings)
         self._opener = traffic.opener
         self._mark = frozenset({traffic.mark})
         self._news = frozenset[str]()

@@ -10,7 +10,7 @@ from ltlc.assurance.histories import Instant, Sample
 from ltlc.assurance.many_traffic import ManyTraffic
 from ltlc.assurance.messages import Content, Messages, Path
 from ltlc.assurance.replay import Id
-from ltlc.assurance.traffic import Begun, Event, Follower, Heard, Passed, Quiet, Said, Settings
+from ltlc.assurance.traffic import Begun, Event, Followed, Follower, Heard, Passed, Quiet, Said, Settings
 from ltlc.assurance.values import Samples
 from ltlc.compiler import Compiled
 from ltlc.dataclass import dataclass
@@ -140,8 +140,7 @@ class SlicesFollower(Follower):
     """What all slices make of events; by itself it knows what they share."""
 
     def __init__(self, compiled: Compiled, traffic: SlicedTraffic, settings: Settings) -> None:
-        super().__init__(compiled, traffic.sources, settings)
-        self._compiled = compiled
+        super().__init__(Followed(compiled, traffic.sources), settings)
         self._traffic = traffic
         self._began: Nanoseconds | None = None
         self._known: list[Instant] = []
@@ -157,7 +156,7 @@ class SlicesFollower(Follower):
             if not isinstance(event, Begun | Heard):
                 return {}
             self._began = event.time
-        if self._settings.rate is not None and self._start is None and (isinstance(event, Heard) or not self._waits):
+        if self._settings.rate is not None and self._start is None and (isinstance(event, Heard) or not self._of.waits):
             self._start = event.time
         found = {id_: one.take(Quiet(event.time)) for id_, one in self._slices.items() if isinstance(event, Heard)}
         self._known += self._ticks(event)
@@ -194,7 +193,7 @@ class SlicesFollower(Follower):
 
     def _born(self, time: Nanoseconds, ident: Ident) -> SliceFollower:
         assert self._began is not None
-        one = SliceFollower(self._compiled, self._traffic, self._settings, ident)
+        one = SliceFollower(self._of, self._traffic, self._settings, ident)
         one.begin(self._began, time, self._known, self._came)
         one.tick_as(self)
         self._slices[ident.id] = one
@@ -204,8 +203,8 @@ class SlicesFollower(Follower):
 class SliceFollower(Follower):
     """What a slice makes of its messages."""
 
-    def __init__(self, compiled: Compiled, traffic: SlicedTraffic, settings: Settings, ident: Ident) -> None:
-        super().__init__(compiled, traffic.sources, settings)
+    def __init__(self, of: Followed, traffic: SlicedTraffic, settings: Settings, ident: Ident) -> None:
+        super().__init__(of, settings)
         self._gone = dict.fromkeys(traffic.gone, False)
         self._topics = traffic.gone
         self._is_born = False
@@ -256,7 +255,7 @@ class SliceFollower(Follower):
     ) -> Iterable[Judged | None]:
         """With its first message the slice begins, and what waits for nothing, whatever that is about."""
         is_first, self._is_born = not self._is_born, True
-        if is_first and not self._waits and self._settings.rate is None:
+        if is_first and not self._of.waits and self._settings.rate is None:
             return self._judged(run, Instant(time, sample, topics, concerns_all=True))
         return super()._taken(run, time, sample, topics)
 

@@ -158,12 +158,12 @@ class Traffic:
 
     def at_random(self, compiled: Compiled, settings: Settings) -> Iterator[Run[Event]]:
         """Messages on one topic or another, some of them without some entries, after gaps of many lengths."""
-        gaps = self._gaps(settings)
+        gaps, followed = self._gaps(settings), Followed(compiled, self.sources)
         messages = [self._at_random(settings) for _ in range(RANDOM_MESSAGES)]
         length = len(self.sources.topics()) * (self.samples.reach - 1 + RANDOM_EVENTS)
         for _ in range(max(1, min(RANDOM_RUNS, MOST_EVENTS // length))):
             events = tuple(self._events(messages, gaps, length))
-            follower = Follower(compiled, self.sources, settings)
+            follower = Follower(followed, settings)
             yield Run(events, [follower.take(event) for event in events], settings)
 
     def _gaps(self, settings: Settings) -> list[Nanoseconds]:
@@ -193,11 +193,12 @@ class Traffic:
     def in_time(self, compiled: Compiled, settings: Settings) -> Iterator[Run[Event]]:
         """Runs of messages, waiting and silence, around the times at which clocks expire."""
         longest = max(durations(compiled.specification.property), default=0)
+        followed = Followed(compiled, self.sources)
         length = max(1, len(self.sources.topics())) * (self.samples.reach - 1 + TIMED_EVENTS)
         most = RUNS_WITH_OPENINGS if self.samples.origins.remembers else TIMED_RUNS
         for number in range(max(1, min(most, MOST_EVENTS // length))):
             chosen = settings if number % 2 else _at_the_pace_of(longest, settings)
-            follower = Follower(compiled, self.sources, chosen)
+            follower = Follower(followed, chosen)
             events: list[Event] = []
             steps: list[list[Judged | None]] = []
             for event in self._around_expiry(follower, chosen, longest):
@@ -248,19 +249,27 @@ def _at_the_pace_of(longest: Nanoseconds, settings: Settings) -> Settings:
     return settings if settings.rate is None or settings.rate < slow else replace(settings, rate=slow)
 
 
+class Followed:
+    """What followers of a property have in common, in all runs."""
+
+    def __init__(self, compiled: Compiled, sources: Sources) -> None:
+        self.origins = Origins(compiled.specification, sources.signals)
+        messages = messages_of(timed_atoms(compiled.formula))
+        self.messages = {name: topics_of(compiled.specification.arrival(name)) for name in messages}
+        """The topics from whose messages ages count, by the name of the news."""
+        self.waits = bool(compiled.machine.waits_for)
+        self.timed = trackers_of(compiled.formula), news_that_counts(compiled.formula)
+        self.counts = counts_of(compiled.formula)
+
+
 class Follower:
     """What a property makes of events, one after the other, by definition: its steps, and the clock steps between."""
 
-    def __init__(self, compiled: Compiled, sources: Sources, settings: Settings) -> None:
-        origins = Origins(compiled.specification, sources.signals)
-        self._history = History(origins)
+    def __init__(self, of: Followed, settings: Settings) -> None:
+        self._of = of
+        self._history = History(of.origins)
         self._settings = settings
-        messages = messages_of(timed_atoms(compiled.formula))
-        self._messages = {name: topics_of(compiled.specification.arrival(name)) for name in messages}
         self._came: dict[str, Nanoseconds] = {}
-        self._waits = bool(compiled.machine.waits_for)
-        self._timed = trackers_of(compiled.formula), news_that_counts(compiled.formula)
-        self._counts = counts_of(compiled.formula)
         self._end = math.inf
         self._latest: dict[Signal, Value] = {}
         self._heard: frozenset[str] = frozenset()
@@ -274,11 +283,11 @@ class Follower:
             self.run = self._begun(event)
             if self.run is None:
                 return []
-            if not self._waits and self._settings.rate is not None:
+            if not self._of.waits and self._settings.rate is not None:
                 self._start = event.time
         found = [each for tick in self._ticks(event) for each in self._judged(self.run, tick)]
         match event:
-            case Begun(time) if not self._waits and self._settings.rate is None:
+            case Begun(time) if not self._of.waits and self._settings.rate is None:
                 found += self._judged(self.run, Instant(time, {}, concerns_all=True))
             case Heard(time, said):
                 found += self._taken(self.run, time, said.sample, frozenset({said.topic}))
@@ -305,7 +314,7 @@ class Follower:
         return self._new_run(event.time) if isinstance(event, Begun | Heard | Together) else None
 
     def _new_run(self, began: Nanoseconds) -> TimedRun:
-        return TimedRun(*self._timed, began, self._history.openings.clock_step, self._counts)
+        return TimedRun(*self._of.timed, began, self._history.openings.clock_step, self._of.counts)
 
     def _ticks(self, event: Event) -> Iterator[Instant]:
         """Those that `event` shows to be due: a tick sees the messages up to its own time."""
@@ -334,11 +343,11 @@ class Follower:
             return [*held, None, *self._hear(run, instant.time, now)]
         if run.time is None and self._settings.timeout is not None:
             self._end = min(self._end, instant.time + self._settings.timeout)
-        letter = step.letter.difference(self._messages).union(self._told(now))
+        letter = step.letter.difference(self._of.messages).union(self._told(now))
         return [*held, *self._noted(run.step(instant.time, letter))]
 
     def _told(self, topics: Collection[str]) -> set[str]:
-        return {name for name, of in self._messages.items() if not of.isdisjoint(topics)}
+        return {name for name, of in self._of.messages.items() if not of.isdisjoint(topics)}
 
     def _hear(self, run: TimedRun, time: Nanoseconds, topics: Collection[str]) -> list[Judged | None]:
         """Messages on `topics` that make no step."""

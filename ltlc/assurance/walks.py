@@ -11,7 +11,7 @@ from __future__ import annotations
 import random
 from collections import Counter
 from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
-from functools import cached_property
+from functools import cached_property, lru_cache
 from itertools import combinations
 from typing import NamedTuple, Protocol
 
@@ -286,16 +286,18 @@ def _as_steps(steps: Iterable[Step], news: Letter) -> list[Step]:
     return found
 
 
-def timed_in(property_: Property) -> list[Atom]:
+@lru_cache  # it is asked of each run
+def timed_in(property_: Property) -> tuple[Atom, ...]:
     """The atoms of the past and of news that `property_` is written with, each after those that decide it.
 
     Before them come those that decide what is counted.
     """
     parts = list(predicates(property_))
     parts = [*(count.operand for part in parts for count in counts_of(part)), *parts]
-    return [*{atom.name: atom for part in parts for atom in atoms_within(part)}.values()]
+    return (*{atom.name: atom for part in parts for atom in atoms_within(part)}.values(),)
 
 
+@lru_cache
 def durations(property_: Property) -> tuple[Nanoseconds, ...]:
     """The durations that `property_` is written with, each once, in ascending order."""
     past = (duration_of(atom) for atom in timed_in(property_) if isinstance(atom, PastAtom))

@@ -8,6 +8,9 @@ What is counted may change at any instant, by a step or by time; its atom stays 
 
 The clock of an age is not set, only asked, at every instant. That a message has come, from which ages count, is no
 atom of the machine: an age that is no longer late shows it; otherwise it does not matter.
+
+Of a property that is judged from a mark on, the machine can put the mark itself: where it begins, and where it begins
+anew, at the instant after each violation. Then a copy of the monitor that has seen no mark goes along.
 """
 
 from __future__ import annotations
@@ -36,7 +39,7 @@ from ltlc.semantics.monitor import Monitor, Target
 from ltlc.semantics.reset_machine import Clocks, ResetMachine
 from ltlc.semantics.timed_atoms import Age, Clock, Previously, counts_of, messages_of, news_of, timed_atoms
 from ltlc.semantics.timed_monitor import Action, AgeDue, Effect, Outcome, TimedMonitor, timeless
-from ltlc.semantics.trackers import Case, Phase, State, Tracker, clocks_around
+from ltlc.semantics.trackers import Case, Phase, State, Tracker, clocks_around, outer_clock
 from ltlc.semantics.verdicts import Verdict
 
 BY_TIME = "by time"
@@ -46,12 +49,15 @@ BY_TIME = "by time"
 class Joint(NamedTuple):
     """A state of the monitor and, unless its verdict is permanent, where the clocks are.
 
-    `stale` are the scopes, by number, that have closed, and at whose opening no value has been taken since.
+    `stale` are the scopes, by number, that have closed, and at whose opening no value has been taken since. The monitor
+    would be in the state `unmarked` if no mark had been put; at the next instant it is put if `is_marked`.
     """
 
     state: int
     clocks: Clocks | None
     stale: frozenset[int] = frozenset()
+    unmarked: int = 0
+    is_marked: bool = False
 
 
 class Shown(NamedTuple):
@@ -73,11 +79,17 @@ Scopes = Mapping[Clock, Collection[str]]
 """The scopes at whose opening values are taken, numbered as they come, with the atoms that read these values."""
 
 
-def fold(formula: Formula, alphabet: Alphabet, monitor: Monitor, scopes: Scopes | None = None) -> TimedMonitor:
-    """What runs: `monitor`, of `formula` over the letters of `alphabet`, together with its clocks."""
+def fold(
+    formula: Formula, alphabet: Alphabet, monitor: Monitor, scopes: Scopes | None = None, mark: str | None = None
+) -> TimedMonitor:
+    """What runs: `monitor`, of `formula` over the letters of `alphabet`, together with its clocks.
+
+    With a `mark`, an atom of a formula with timed atoms that is of no interest before it holds, the machine says itself
+    where that is, and goes on after a violation.
+    """
     if not timed_atoms(formula) and not scopes:
         return timeless(monitor)
-    return _Folder(formula, alphabet, monitor, scopes or {}).folded()
+    return _Folder(formula, alphabet, monitor, scopes or {}, mark).folded()
 
 
 class _Folder:
@@ -86,8 +98,11 @@ class _Folder:
     There is a question for each clock and, where clock steps can take values, whether an instant is one.
     """
 
-    def __init__(self, formula: Formula, alphabet: Alphabet, monitor: Monitor, scopes: Scopes) -> None:
+    def __init__(
+        self, formula: Formula, alphabet: Alphabet, monitor: Monitor, scopes: Scopes, mark: str | None
+    ) -> None:
         self.monitor = monitor
+        self.mark = () if mark is None else (mark,)
         self.time = ResetMachine(formula, scopes)
         subjects = [tracker.subject for tracker in self.time.trackers]
         self.scopes = [subjects.index(scope) for scope in scopes]
@@ -104,22 +119,24 @@ class _Folder:
         self.clocks = [k for k, tracker in enumerate(self.time.trackers) if tracker.bounds]
         decided_atoms = [atom for tracker in self.time.trackers for atom in tracker.atoms]
         read = read_by(formula, alphabet)
-        self.atoms = tuple(atom for atom in read.atoms if atom not in (*decided_atoms, *self.messages))
+        self.atoms = tuple(atom for atom in read.atoms if atom not in (*decided_atoms, *self.messages, *self.mark))
         self.questions = tuple(f"clock {number}" for number in range(len(self.clocks)))
         self.by_time = (BY_TIME,) if self.takes_clock_steps and scopes else ()
-        names = (*self.atoms, *self.questions, *self.by_time, *self.messages, *decided_atoms)
+        names = (*self.atoms, *self.questions, *self.by_time, *self.messages, *self.mark, *decided_atoms)
         self.levels = {name: level for level, name in enumerate(names)}
         self.diagrams = Diagrams()
         self.rows = [self._row(edge) for edge in monitor.edges]
         self.possible = self.diagrams.true
         for group in read.groups:
             self.possible = self.diagrams.conjunction(self.possible, valuations(self.diagrams, names, group))
+        self.before_mark = {self.levels[name]: False for name in (*self.mark, *self._late())}
         told = self._whatever(self.messages, self.possible)
         self.letters = Letters(names, self.diagrams, told, runs_in_time(TRUE, names, self.diagrams))
 
     def folded(self) -> TimedMonitor:
         """The joint machine, as small as joining states makes it."""
-        initial = Joint(0, None if self.monitor.verdicts[0].is_permanent else self.time.initial)
+        clocks = None if self.monitor.verdicts[0].is_permanent else self.time.initial
+        initial = Joint(0, clocks, is_marked=bool(self.mark))
         whole = explore(self.letters, initial, self._step, self._shown)
         machine = join_compatible(minimise(whole))
         outcomes: dict[Outcome, int] = {}
@@ -235,7 +252,16 @@ class _Folder:
             after = self.diagrams.given(answers, self._step_or_clock_step(joint, cases))
             row = self.diagrams.choose(guard, after, row)
         nowhere = self.diagrams.terminal(Letter.IMPOSSIBLE)
-        return self._unless_messages(self.diagrams.choose(self.possible, row, nowhere))
+        marked = {self.levels[name]: joint.is_marked for name in self.mark}
+        row = self.diagrams.given(marked, self.diagrams.choose(self.possible, row, nowhere))
+        return self._unless_messages(row)
+
+    def _late(self) -> Iterator[str]:
+        """The atoms of clocks that start with the mark at the earliest."""
+        return (atom for tracker in self.time.trackers if isinstance(tracker.subject, Clock) for atom in tracker.atoms)
+
+    def _is_violated(self, state: int) -> bool:
+        return self.monitor.verdicts[state] is Verdict.VIOLATED
 
     def _unless_messages(self, row: Diagram) -> Diagram:
         """`row` where no message has come, as far as that is possible."""
@@ -286,16 +312,33 @@ class _Folder:
     def _after(self, joint: Joint, cases: tuple[Case, ...], stale: frozenset[int]) -> Diagram:
         """Where the monitor goes from `joint`, with all that is done on the way."""
         assert joint.clocks is not None
-        clocks = Clocks(False, tuple(case.state for case in cases))
-        actions = tuple(self._actions(joint.clocks, cases))
-        stops = tuple(self._stops(joint.clocks))
+        before, clocks = joint.clocks, Clocks(False, tuple(case.state for case in cases))
+        actions = tuple(self._actions(before, cases))
+        stops = tuple(self._stops(before))
 
-        def leap(state: int, settled: bool) -> Leap:
+        def leap(state: int, settled: bool, unmarked: int) -> Leap:
+            if self.mark and self._is_violated(state):
+                return self._anew(state, before, cases, unmarked)
             if self.monitor.verdicts[state].is_permanent:
                 return Leap(Joint(state, None), Deeds(stops))
-            return Leap(Joint(state, clocks, stale), Deeds(actions, not settled))
+            return Leap(Joint(state, clocks, stale, unmarked), Deeds(actions, not settled))
 
-        return self.diagrams.combine(leap, self.rows[joint.state], self._settled())
+        row = self.rows[joint.unmarked if joint.is_marked else joint.state]
+        unmarked = self.diagrams.terminal(0)
+        if self.mark:
+            unmarked = self.diagrams.given(self.before_mark, self.rows[joint.unmarked])
+        return self.diagrams.combine(leap, row, self._settled(), unmarked)
+
+    def _anew(self, state: int, before: Clocks, cases: tuple[Case, ...], unmarked: int) -> Leap:
+        """After a violation: only the past goes on. The next instant comes a nanosecond later."""
+        begun = tuple(
+            case._replace(state=tracker.initial) if outer_clock(tracker.subject) else case
+            for tracker, case in zip(self.time.trackers, cases, strict=True)
+        )
+        every = frozenset(range(len(self.scopes)))
+        clocks = Clocks(False, tuple(case.state for case in begun))
+        joint = Joint(state, clocks, every, unmarked, is_marked=True)
+        return Leap(joint, Deeds(tuple(self._actions(before, begun)), again=True))
 
     def _settled(self) -> Diagram:
         """True for the letters that no further nanosecond changes by itself."""

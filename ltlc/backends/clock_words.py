@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ltlc.semantics.durations import Nanoseconds, duration_text
 from ltlc.semantics.intervals import start_of
-from ltlc.semantics.ltl import TRUE, to_text
+from ltlc.semantics.ltl import TRUE, And, Atom, Formula, Not, Or, Truth
 from ltlc.semantics.timed_atoms import (
     AfterOpened,
     Clock,
@@ -31,16 +31,16 @@ def _moment(clock: Clock) -> str:
         case AfterOpened(outer, Historically(lasting=int(start)) as event) if event == start_of(outer, start):
             return f"{duration_text(start)} after {_moment(outer)}"
         case AfterOpened(outer, event):
-            return f"the first {to_text(event)}{_inside(outer)}"
+            return f"the first {_quoted(event)}{_inside(outer)}"
         case UntilScope(outer):
             return _moment(outer)
         case EpisodeOpened(outer, opening):
-            return f"{to_text(opening)} opened the scope{_inside(outer)}"
+            return f"{_quoted(opening)} opened the scope{_inside(outer)}"
         case FirstOpen(outer, trigger, goal):
-            first = "moment" if trigger == TRUE else to_text(trigger)
-            return f"the first {first} without {to_text(goal)}{_inside(outer)}"
+            first = "moment" if trigger == TRUE else _quoted(trigger)
+            return f"the first {first} without {_quoted(goal)}{_inside(outer)}"
         case LastTrigger(outer, trigger):
-            return f"the last {to_text(trigger)}{_inside(outer)}"
+            return f"the last {_quoted(trigger)}{_inside(outer)}"
         case _:
             return str(clock)
 
@@ -49,3 +49,30 @@ def _inside(outer: Clock) -> str:
     """The scope that a moment belongs to, unless it is the whole run."""
     found = _moment(outer)
     return "" if found == "the beginning" else f" after {found}"
+
+
+def _quoted(predicate: Formula) -> str:
+    """A state predicate as the language has it, in quotes unless it is a name."""
+    found = _predicate(predicate)
+    return found if found.isidentifier() else f'"{found}"'
+
+
+def _predicate(formula: Formula, around: str = "") -> str:
+    """A state predicate as the language has it, as an operand of `around`, if that is an operator."""
+    match formula:
+        case Truth():
+            return "true"
+        case Not(Truth()):
+            return "false"
+        case Atom(name):
+            return name
+        case Not(operand):
+            return f"not {_predicate(operand, 'not')}"
+        case And(left, right):
+            operator = "and"
+        case Or(left, right):
+            operator = "or"
+        case _:
+            raise TypeError(f"not a state predicate: {formula}")
+    text = f"{_predicate(left, operator)} {operator} {_predicate(right, operator)}"
+    return text if around in ("", operator) else f"({text})"

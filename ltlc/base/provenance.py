@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import asdict
 from functools import cache
-from hashlib import file_digest
 from pathlib import Path
 from typing import Any
 
@@ -29,6 +28,8 @@ class FileDigest:
 
 def digest_of(path: Path, name: str) -> FileDigest:
     """The file at `path`, called `name`. Raises OSError."""
+    from hashlib import file_digest  # takes time, and few commands ask
+
     with path.open("rb") as file:
         found = file_digest(file, "sha256").hexdigest()
         return FileDigest(name, file.tell(), found)

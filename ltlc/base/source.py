@@ -6,7 +6,6 @@ from bisect import bisect_right
 from collections.abc import Mapping
 from dataclasses import field
 from functools import cached_property
-from hashlib import sha256
 
 from ltlc.dataclass import dataclass
 
@@ -51,6 +50,8 @@ class Source:
     @cached_property
     def sha256(self) -> str:
         """The SHA-256 of the file, in hexadecimal digits, as `sha256sum` prints it."""
+        from hashlib import sha256  # takes time, and few commands ask
+
         return sha256(self.mark + self.text.encode(errors="surrogatepass")).hexdigest()
 
     def position(self, offset: int) -> Position:

@@ -1,30 +1,28 @@
 """All violations of a property: the first one decides its verdict, and these come after it.
 
-After a violation, from the next instant on, the rest of the run is judged anew, as if the property began there. The
-violation lasts up to the first instant at which the property, judged so, is neither violated nor owes anything. So of
-`never p` there is a violation for each stretch in which p holds; of a response one for each trigger that has no answer
-in time, up to the answer; of `after_until` one for each episode, if what opens it does not hold any more.
-
-What reads the past, or values at openings, has one violation only: they would begin anew as well.
+After a violation, from the next instant on, the rest of the run is judged anew, as if the property began there; what it
+says of the past is said of the whole run. The violation lasts up to the first instant at which the property, judged so,
+is neither violated nor owes anything. So of `never p` there is a violation for each stretch in which p holds; of a
+response one for each trigger that has no answer in time, up to the answer; of `after_until` one for each episode, if
+what opens it does not hold any more.
 """
 
 from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Container, Iterable, Sequence
-from typing import TYPE_CHECKING, Any
+from copy import copy
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-from ltlc.compiler import Compiled
 from ltlc.dataclass import dataclass
 from ltlc.runtime.courses import Course
 from ltlc.runtime.episodes import Episodes, latest
-from ltlc.runtime.properties import Failure, Moment, Monitor, MonitoredProperty
+from ltlc.runtime.properties import Failure, Moment, MonitoredProperty
 from ltlc.runtime.reasons import Before
 from ltlc.runtime.sampling import New, Value
 from ltlc.runtime.times import NEVER
 from ltlc.runtime.tracking import Observer, RecordedTrack, Track
 from ltlc.semantics.durations import Nanoseconds
-from ltlc.semantics.timed_atoms import Age, Late, News, timed_atoms
 from ltlc.semantics.verdicts import Verdict
 
 if TYPE_CHECKING:
@@ -32,6 +30,13 @@ if TYPE_CHECKING:
 
 MOST = 1000
 """After so many violations of a property no more are looked for."""
+
+
+class _Out(NamedTuple):
+    """An instant that violated a property, and the state that this left; nothing has come since."""
+
+    time: Nanoseconds
+    state: tuple[object, ...]
 
 
 @dataclass(slots=True)
@@ -52,32 +57,35 @@ class Violation:
         return duration if duration > 1 else 0
 
 
-def can_recur(compiled: Compiled) -> bool:
-    """Whether violations after the first one are looked for."""
-    is_timeless = all(isinstance(atom, News | Age | Late) for atom in timed_atoms(compiled.formula))
-    of = compiled.specification
-    return is_timeless and not of.openings() and of.slicing is None
-
-
 class Later(Course):
-    """A property after its first violation: all its `violations`, that one included.
+    """A property before and after its first violation: all its `violations`.
 
-    Where it `is_out`, the last instant, which was at `_last`, violated it, so that it begins anew at the next one. It
-    `is_stuck` if that has been found to violate it as well: so will all up to a step, or a change of an age.
+    Where it `is_out`, the last instant, which was at `_last`, violated it, so that it begins anew at the next one. By
+    itself it is followed from its first violation on; if its monitor `restarts`, from the beginning of the session.
     """
 
-    __slots__ = ("_began", "_has_news", "_last", "_renewed_at", "is_out", "is_stuck", "violations")
+    __slots__ = ("_has_news", "_last", "_out", "_renewed_at", "is_out", "restarts", "skipped", "violations")
 
-    def __init__(self, track: Track, first: Failure) -> None:
-        """Go on from where a track was violated."""
-        super().__init__(track.property, Counter(), first.time)
-        self._keep_ages(track.monitor)
-        self.steps, self.judged_on = track.steps, track.judged_on
-        self.violations = [violation_at(first)]
-        self.is_out, self.is_stuck = True, False
-        self._last = self._renewed_at = first.time
-        self._began = NEVER
-        self._has_news = any(isinstance(wanted, New) for wanted in track.property.inputs)
+    def __init__(self, property_: MonitoredProperty, restarts: bool) -> None:
+        super().__init__(property_, Counter())
+        self.violations: list[Violation] = []
+        self.skipped = 0
+        """How many messages made no step before it was followed."""
+        self.is_out = False
+        self.restarts = restarts
+        self._last = self._renewed_at = -NEVER
+        self._out: _Out | None = None
+        self._has_news = any(isinstance(wanted, New) for wanted in property_.inputs)
+
+    @classmethod
+    def after(cls, track: Track, first: Failure) -> Later:
+        """What goes on from where a track was violated."""
+        later = cls(track.property, restarts=False)
+        later.monitor, later.watchers, later.skipped = copy(track.monitor), track.watchers.fork(), track.invalid
+        later.steps, later.judged_on = track.steps, track.judged_on
+        later.violations.append(violation_at(first))
+        later.verdict, later.is_out, later._last = Verdict.VIOLATED, True, first.time
+        return later
 
     @property
     def is_over(self) -> bool:
@@ -86,14 +94,14 @@ class Later(Course):
         return is_satisfied or len(self.violations) >= MOST
 
     @property
+    def lasts(self) -> bool:
+        """Whether a violation goes on."""
+        return bool(self.violations) and self.violations[-1].until is None
+
+    @property
     def due(self) -> int:
         """When the next instant comes that is not as the last one, unless a step comes first."""
-        if not self.is_out:
-            return super().due
-        if not self.is_stuck:
-            return self._last + 1
-        dues = (getattr(self.monitor, age.due) for age in self.property.ages)
-        return min((due + 1 for due in dues if due >= self._last), default=NEVER)
+        return self._last + 1 if self.is_out else super().due
 
     def hear(self, time: int, signals: Container[str]) -> None:
         """Messages come: ages count anew. If no step is taken now, that is an instant of its own."""
@@ -104,11 +112,11 @@ class Later(Course):
     def renew(self, time: int) -> list[Any]:
         """Take the instant at which a late age is young, by what makes no step."""
         renewed, self._renewed = self._renewed, ()
-        if self.is_out and renewed:
-            self._try(time)
-        else:
+        if renewed and self.steps:
             for monitor in renewed:
                 monitor.due = time - 1
+            if self.is_out:
+                self._last = time - 1
             self._pass(time)
         return []
 
@@ -123,21 +131,42 @@ class Later(Course):
         while not self.is_over and (due := self.due) <= time:
             if self.is_out:
                 self._try(due)
-                continue
-            began, lasts = self._began, self.violations[-1].until is None
-            self._expire(Moment(self.steps - 1, due, by_time=True))
-            if self._settle(due) and lasts and began < NEVER and not self.property.ages:
-                # What is held has violated it once more: so it will, as long as it is held.
-                self._last += max(0, time - due) // (due + 1 - began) * (due + 1 - began)
+            else:
+                self._take(due)
+                self._watch(due)
+                self._expire(Moment(self.steps - 1, due, by_time=True))
+            lasts, out = self.lasts, self._out
+            if self._settle(due):
+                self._out = _Out(due, self._state())
+                if lasts and out is not None and out.state == self._out.state:
+                    self._repeat(due - out.time, time)
+        self._watch(time)
 
     def _try(self, time: Nanoseconds) -> None:
         """The property begins anew with what is held."""
         held, steps = self._held(), self.steps
         self._begin_anew(time)
-        super().step(time, held)
-        self.steps, self._began = steps, time
-        self.is_stuck = self.verdict is Verdict.VIOLATED
-        self._settle(time)
+        if not self.restarts:
+            super().step(time, held[: len(self.property.inputs)])
+            self.steps = steps
+            return
+        self.monitor.due = time - 1
+        self._take(time)
+        self._watch(time)
+        self._open_and_close(steps - 1, time, self._held(), by_time=True)
+        self._expire(Moment(steps - 1, time, by_time=True))
+
+    def _repeat(self, period: Nanoseconds, until: Nanoseconds) -> None:
+        """What is held has violated it once more, so long after: so it will, as long as it is held.
+
+        Unless a clock of the past comes due. In between it may be open.
+        """
+        last = min((due for due in self._dues() if due >= self._last), default=NEVER)
+        if period > 1:
+            last = min(last, until)
+        self._last += max(0, last - self._last) // period * period
+        if self.restarts:
+            self.monitor.due = self._last
 
     def step(self, time: int, values: Sequence[Value]) -> Verdict | None:
         """Judge one more step."""
@@ -145,7 +174,7 @@ class Later(Course):
         if self.is_over:
             self.steps += 1
             return None
-        was_out, last, steps = self.is_out, self.monitor, self.steps
+        was_out, last, steps, before = self.is_out, self.monitor, self.steps, self._state()
         if was_out:
             self._begin_anew(time)
         super().step(time, values)
@@ -153,37 +182,47 @@ class Later(Course):
             if was_out:
                 self.monitor, self.verdict = last, Verdict.VIOLATED
             return None
-        # Of what begins anew without news, the next instant says what this one did.
-        self._began = NEVER
-        self.is_stuck = self._settle(time) and was_out and not self._has_news
-        self.is_settled &= was_out == self.is_out and (self.is_out or self.due >= NEVER)
+        self._out = None
+        if self._settle(time) and not self._has_news:
+            # Of what begins anew without news, the next instant says what this one did.
+            self._out = _Out(time, self._state())
+            if was_out and before == self._out.state:
+                self._repeat(1, time)
+        is_alike = self.is_out or not self.violations or self.due >= NEVER
+        self.is_settled &= was_out == self.is_out and is_alike
         return None
 
     def _begin_anew(self, time: Nanoseconds) -> None:
         """The property begins at this instant."""
-        last = self.monitor
-        self.begin(time)
-        self._keep_ages(last)
-        self.verdict, self.decided_at = Verdict.NOT_STARTED, None
         self._passed, self.scopes = (), tuple(map(Episodes, self.property.scopes))
-
-    def _keep_ages(self, last: Monitor) -> None:
-        """Ages count from messages, whatever begins anew."""
-        for age in self.property.ages:
+        if self.restarts:
+            return
+        last, make = self.monitor, self.property.monitor
+        self.monitor = make(time) if self.property.timed else make()
+        for age in self.property.ages:  # which count from messages, whatever begins anew
             setattr(self.monitor, age.due, getattr(last, age.due))
+        self.verdict, self.decided_at = Verdict.NOT_STARTED, None
+
+    def _dues(self) -> tuple[int, ...]:
+        """When each clock is due."""
+        return self.property.dues(self.monitor) if self.property.timed else ()
+
+    def _state(self) -> tuple[object, ...]:
+        """What decides how it goes on from a violation, as long as the same is held."""
+        return (self.monitor.state, *self._dues())
 
     def _settle(self, time: Nanoseconds) -> bool:
         """Whether the instant violates the property; it may be the first one, or the first one after that."""
-        last = self.violations[-1]
+        lasts = self.lasts
         self.is_out = self.verdict is Verdict.VIOLATED
         if self.is_out:
             self._last = time
-            if last.until is not None and self.decided_at is not None:
+            if not lasts and self.decided_at is not None:
                 self.violations.append(violation_at(self.decided_at))
             if len(self.violations) < MOST:
                 self.decided_at = None  # it goes on
-        elif self.verdict is not Verdict.PRESUMABLY_VIOLATED and last.until is None:
-            last.until = time
+        elif lasts and self.verdict is not Verdict.PRESUMABLY_VIOLATED:
+            self.violations[-1].until = time
         return self.is_out
 
     def _failure(self, before: Before, moment: Moment, values: Sequence[Value]) -> Failure:
@@ -202,10 +241,11 @@ def violation_at(failure: Failure) -> Violation:
 class JudgedTrack(RecordedTrack):
     """A track of a recording: if the property `can_recur`, it has what is known `later` than its first violation.
 
-    Its `letters` are kept if they are wanted.
+    That is judged by `again`, the property with a machine that restarts, if it needs one. While it `is_apart`, what
+    takes the track forward does not take `later` along. Its `letters` are kept if they are wanted.
     """
 
-    __slots__ = ("can_recur", "later", "letters")
+    __slots__ = ("can_recur", "is_apart", "later", "letters")
 
     def __init__(
         self,
@@ -214,9 +254,10 @@ class JudgedTrack(RecordedTrack):
         observer: Observer | None,
         can_recur: bool,
         letters: Letters | None = None,
+        again: MonitoredProperty | None = None,
     ) -> None:
-        self.can_recur, self.letters = can_recur, letters
-        self.later: Later | None = None
+        self.can_recur, self.is_apart, self.letters = can_recur, False, letters
+        self.later = None if again is None else Later(again, restarts=True)
         super().__init__(property_, keep, observer)
 
     @property
@@ -224,9 +265,20 @@ class JudgedTrack(RecordedTrack):
         """How many violations were found."""
         return super().times_violated if self.later is None else len(self.later.violations)
 
+    @property
+    def _along(self) -> Later | None:
+        """What is taken along."""
+        return None if self.is_apart else self.later
+
+    def begin(self, session: int) -> None:
+        """The session begins; ages count from then."""
+        super().begin(session)
+        if self.later is not None:
+            self.later.begin(session)
+
     def step(self, time: int, values: Sequence[Value]) -> Verdict | None:
         """Judge one more step, to whose time the property was held."""
-        later, steps = self.later, self.steps
+        later, steps = self._along, self.steps
         if later is not None:
             later.step(time, values)
         previous = super().step(time, values)
@@ -240,8 +292,8 @@ class JudgedTrack(RecordedTrack):
     def hold(self, time: int) -> list[Any]:
         """Take the clock steps up to and including `time`, with no step until then."""
         changes = super().hold(time)
-        if self.later is not None:
-            self.later.hold(time)
+        if (later := self._along) is not None:
+            later.hold(time)
         return changes
 
     def hear(self, time: int, signals: Container[str]) -> None:
@@ -249,8 +301,8 @@ class JudgedTrack(RecordedTrack):
         super().hear(time, signals)
         if self.letters is not None:
             self.letters.hear(time, signals)
-        if self.later is not None:
-            self.later.hear(time, signals)
+        if (later := self._along) is not None:
+            later.hear(time, signals)
 
     def repeat(self, times: int, at: Iterable[int]) -> None:
         """Judge the last step `times` more times, `at` the times that it gives."""
@@ -258,15 +310,16 @@ class JudgedTrack(RecordedTrack):
         super().repeat(times, at)
         if self.letters is not None:
             self.letters.repeat(self.steps - steps)
-        if self.later is not None:
-            self.later.repeat(times, ())
+        if (later := self._along) is not None:
+            later.repeat(times, ())
 
     def _change(
         self, before: Before, step: int, time: int, values: Sequence[Value], *, by_time: bool = False
     ) -> Verdict:
         previous = super()._change(before, step, time, values, by_time=by_time)
-        if self.can_recur and self.verdict is Verdict.VIOLATED and self.decided_at is not None:
-            self.later = Later(self, self.decided_at)
+        is_first = self.verdict is Verdict.VIOLATED and self.later is None
+        if self.can_recur and is_first and self.decided_at is not None:
+            self.later = Later.after(self, self.decided_at)
         return previous
 
 

@@ -9,6 +9,7 @@ from copy import copy
 from ltlc.runtime.episodes import NOBODY, Episodes, Watchers, count_anew, latest
 from ltlc.runtime.properties import (
     Change,
+    Condition,
     Failure,
     Moment,
     Monitor,
@@ -30,6 +31,7 @@ class Course:
 
     __slots__ = (
         "_invalid_last",
+        "_lapsed",
         "_passed",
         "_renewed",
         "_since",
@@ -64,6 +66,7 @@ class Course:
         self.is_settled = True
         self.scopes = tuple(map(Episodes, property_.scopes))
         self.judged_on: Sequence[Value] = ()
+        self._lapsed: tuple[int | None, ...] = (None,) * len(property_.clocks)
         self._passed: tuple[int, ...] = ()
         self._invalid_last: str | None = None
         self._renewed: tuple[Monitor, ...] = ()
@@ -180,6 +183,10 @@ class Course:
             change = Change(self.property, previous, self.verdict, moment)
         if self.property.counts_bounds:
             self._count_bounds(before[1])
+        if self.property.recalls:
+            pairs = zip(before[1], self._lapsed, strict=True)
+            last = moment.time - 1
+            self._lapsed = tuple(due if due == last else was for due, was in pairs)
         return change
 
     def _watch(self, time: int) -> None:
@@ -325,11 +332,17 @@ class Course:
             moment.step,
             moment.time,
             tuple(zip(map(str, (*of.inputs, *of.kept)), values, strict=True)),
-            because(of, before, moment, values, self.passed()) if is_violated else (),
+            self._because(before, moment, values) if is_violated else (),
             self.open_since,
             latest(self.scopes),
             by_time=moment.by_time,
         )
+
+    def _because(
+        self, before: Before, moment: Moment, values: Sequence[Value]
+    ) -> tuple[Condition, ...]:
+        of, passed = self.property, self.passed()
+        return because(of, before, moment, values, passed, self._lapsed)
 
     def repeat(self, times: int, at: Iterable[int]) -> None:
         """Judge the last step `times` more times, `at` the times that it gives.

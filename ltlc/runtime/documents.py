@@ -84,6 +84,8 @@ def _because(condition: Condition) -> dict[str, Any]:
         told["age"] = seconds(condition.age)
     if condition.lasted is not None:
         told["lasted"] = seconds(condition.lasted)
+    if condition.ago is not None:
+        told["ago"] = seconds(condition.ago)
     if condition.element is not None:
         index, values = condition.element
         found = {name: json_value(value) for name, value in values}

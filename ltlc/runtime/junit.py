@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from html import escape
 from typing import Any
 
+from ltlc.dataclass import dataclass
 from ltlc.runtime.properties import stated
 from ltlc.runtime.reports import figure, printable, sentence, unseen
 from ltlc.runtime.session import Session

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from itertools import pairwise
 from operator import attrgetter
 from typing import Any, Protocol
 
+from ltlc.dataclass import dataclass
 from ltlc.runtime.sampling import Excused, Value, Wanted
 from ltlc.semantics.verdicts import Verdict
 
@@ -69,8 +70,9 @@ class Condition:
     They include its margin, and are None where a boolean is not compared to anything.
     The `relation` is that of numbers in order, or empty. If it asks for an `age`, that
     is in ns, unless it has just passed the bound. If it fails since something has not
-    `lasted` long enough, that is how long it had, in ns. If one `element` of arrays
-    makes it hold or fail, that is its index and, by the name of each array, its value.
+    `lasted` long enough, that is how long it had, in ns; if it asks whether something
+    held of late, it last did so long `ago`. If one `element` of arrays makes it hold or
+    fail, that is its index and, by the name of each array, its value.
     """
 
     text: str
@@ -80,6 +82,7 @@ class Condition:
     relation: str = ""
     age: int | None = None
     lasted: int | None = None
+    ago: int | None = None
     element: tuple[int, tuple[tuple[str, Value], ...]] | None = None
 
 
@@ -118,7 +121,8 @@ class Clock:
     There is a condition in `texts` for each of its `bounds`, ascending. Whether that
     holds is `late` from when on the clock is past the bound. A count has no bounds: the
     clock moves with what occurs at a step, before the step asks for its one condition.
-    That of an age (`is_age`) counts from the last message.
+    That of an age (`is_age`) counts from the last message; if it `is_recent`, the clock
+    of `once p within D`, from the last moment at which p held.
     """
 
     due: str
@@ -126,6 +130,7 @@ class Clock:
     bounds: tuple[int, ...]
     late: bool
     is_age: bool = False
+    is_recent: bool = False
 
     def passed(self, passed: int, before: int, after: int) -> int:
         """How many bounds have passed once its due time changes; none, if it starts."""
@@ -186,14 +191,16 @@ class MonitoredProperty:
     `held_edges` where at a clock step, through `decisions` about what `conditions`
     gives for the values that are read, and about `clocks`; all are empty where nothing
     violates the property. Of conditions about arrays, `elements` says what decides
-    them; `constants` are names of values of inputs. With a `slicing` it is judged for
+    them; `constants` are names of values of inputs, and `written` what the author calls
+    inputs by, where that is not their names. With a `slicing` it is judged for
     each id, and all of this is said of one slice. The `requirement` that it states is
     an object of JSON: its `id`, `text` and `attributes`; without any it is empty.
 
     It `waits` for those of its inputs that are not excused; news always has a value.
     `dues` of a monitor are when each of its clocks is due; with `counts_bounds`, some
-    clock has several bounds. A step of it `has_more` than a step of the monitor where
-    there are scopes, or values at openings.
+    clock has several bounds; if it `recalls`, it is explained by when some were due. A
+    step of it `has_more` than a step of the monitor where there are scopes, or values
+    at openings.
     """
 
     label: str
@@ -218,6 +225,7 @@ class MonitoredProperty:
     decisions: tuple[Decision, ...] = ()
     elements: tuple[Elements, ...] = ()
     constants: Constants = field(default_factory=dict)
+    written: Mapping[str, str] = field(default_factory=dict)
     slicing: SlicedBy | None = None
     requirement: Mapping[str, Any] = field(default_factory=dict)
 
@@ -226,6 +234,7 @@ class MonitoredProperty:
         init=False, repr=False, compare=False
     )
     counts_bounds: bool = field(init=False, repr=False, compare=False)
+    recalls: bool = field(init=False, repr=False, compare=False)
     has_more: bool = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
@@ -235,6 +244,7 @@ class MonitoredProperty:
             "waits": tuple(n not in excused for n in range(len(self.inputs))),
             "dues": _dues(names),
             "counts_bounds": any(len(clock.bounds) > 1 for clock in self.clocks),
+            "recalls": self.slicing is None and any(c.is_recent for c in self.clocks),
             "has_more": bool(self.kept or self.scopes or self.events),
         }
         for name, value in derived.items():

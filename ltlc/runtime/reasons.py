@@ -26,10 +26,12 @@ def because(
     moment: Moment,
     values: Sequence[Value],
     bounds: Sequence[int],
+    lapsed: Sequence[int | None],
 ) -> tuple[Condition, ...]:
     """The conditions that led to a violation, when so many `bounds` had passed.
 
-    At a clock step some clock is late, which the monitor may well not ask.
+    Clocks that are not due were so when they `lapsed`. At a clock step some clock is
+    late, which the monitor may well not ask.
     """
     state, dues = before
     late = [due < moment.time for due in dues]
@@ -46,10 +48,20 @@ def because(
         passed = (n for n, is_late in enumerate(late, first) if is_late)
         numbers = (*numbers, *passed)
     for n, clock in enumerate(of.clocks, first):
-        if clock.bounds and not moment.by_time and _came_early(of, state, n, holds):
-            since = dues[n - first] - clock.bounds[bounds[n - first]]
-            found[n] = replace(found[n], lasted=moment.time - since)
-            numbers = (*numbers, *({n} - {*numbers}))
+        if not clock.bounds or moment.by_time:
+            continue
+        due = dues[n - first]
+        if _came_early(of, state, n, holds):
+            so_long = moment.time - due + clock.bounds[bounds[n - first]]
+            found[n] = _with_time(clock, found[n], so_long)
+        elif (last := lapsed[n - first]) is not None and _came_late(
+            of, state, n, holds
+        ):
+            so_long = moment.time - last + clock.bounds[0]
+            found[n] = replace(found[n], holds=clock.late, ago=so_long)
+        else:
+            continue
+        numbers = (*numbers, *({n} - {*numbers}))
     elements = {each.condition: each for each in of.elements}
     return tuple(
         with_element(of, elements[n], given, found[n]) if n in elements else found[n]
@@ -74,6 +86,31 @@ def _came_early(
     now = dict(enumerate(holds))
     target, then = _targets(of, of.edges[state], now), now | {clock: True}
     return any(_targets(of, of.edges[s], then) != target for s in in_time - {state})
+
+
+def _came_late(
+    of: MonitoredProperty, state: int, clock: int, holds: Sequence[bool]
+) -> bool:
+    """Whether a step would have led elsewhere before this recent clock ran out."""
+    if not of.clocks[clock - len(holds)].is_recent:
+        return False
+    last = range(len(holds) - len(of.clocks), len(holds))
+    lapses = dict.fromkeys(last, False) | {clock: True}
+    now = dict(enumerate(holds))
+    target = _targets(of, of.edges[state], now)
+    return any(
+        s != state
+        and state in _targets(of, held, lapses)
+        and _targets(of, of.edges[s], now | {clock: False}) != target
+        for s, held in enumerate(of.held_edges)
+    )
+
+
+def _with_time(clock: Clock, condition: Condition, so_long: int) -> Condition:
+    """What a clock decides that has run for so long."""
+    if clock.is_recent:
+        return replace(condition, ago=so_long)
+    return replace(condition, lasted=so_long)
 
 
 def _of_clock(clock: Clock, due: int, time: int, passed: int) -> Condition:

@@ -107,7 +107,8 @@ def failure_text(property_: MonitoredProperty, failure: Failure, scale: Scale) -
     lines.append(f"  {property_.text}")
     lines.append("Failing state:")
     for name, value in failure.values:
-        lines.append(f"  {name}: {named_text(property_, name, value)}")
+        shown = property_.written.get(name, name)
+        lines.append(f"  {shown}: {named_text(property_, name, value)}")
     if failure.because:
         lines.append("Because:")
         lines += [f"  {condition_text(property_, c)}" for c in failure.because]
@@ -146,6 +147,8 @@ def condition_text(property_: MonitoredProperty, condition: Condition) -> str:
         parts.append(f"the age is {span_text(condition.age)}")
     if condition.lasted is not None:
         parts.append(f"{span_text(condition.lasted)} so far")
+    if condition.ago is not None:
+        parts.append(f"last {span_text(condition.ago)} ago")
     if condition.element is not None:
         index, values = condition.element
         parts += [f"{name}[{index}] is {value_text(value)}" for name, value in values]

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from ltlc.dataclass import dataclass
 from ltlc.runtime.properties import Change
 from ltlc.runtime.readers import Clocks, Readers, Stepped
 from ltlc.runtime.sampling import Update, Value

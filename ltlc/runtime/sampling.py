@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Collection, Iterable, Sequence
-from dataclasses import dataclass
 from math import isnan
 from operator import itemgetter
 from typing import Any
 
+from ltlc.dataclass import dataclass
 from ltlc.runtime.functions import divide, doubles_of, elements_of, number
 from ltlc.runtime.times import seconds
 

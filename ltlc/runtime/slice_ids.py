@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Collection
-from dataclasses import dataclass
 
+from ltlc.dataclass import dataclass
 from ltlc.runtime.courses import Course
 from ltlc.runtime.episodes import Episodes, forked
 from ltlc.runtime.properties import Failure, MonitoredProperty

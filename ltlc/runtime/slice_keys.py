@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from uuid import UUID
 
+from ltlc.dataclass import dataclass
 from ltlc.runtime.properties import MonitoredProperty
 from ltlc.runtime.sampling import (
     Derived,

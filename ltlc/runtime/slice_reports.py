@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from heapq import nsmallest
 from itertools import islice
 from typing import Any
 
+from ltlc.dataclass import dataclass
 from ltlc.runtime.documents import failure_report, json_value, moment_report
 from ltlc.runtime.episodes import latest
 from ltlc.runtime.properties import Moment, Opening

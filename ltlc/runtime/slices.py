@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+from ltlc.dataclass import dataclass
 from ltlc.runtime.instance_reports import ToldInstances
 from ltlc.runtime.sampling import Derived, Reading
 from ltlc.runtime.session import Session

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from decimal import Decimal
 from enum import Enum
+
+from ltlc.dataclass import dataclass
 
 SECOND = 10**9
 NEVER = 1 << 62

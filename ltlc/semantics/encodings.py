@@ -80,6 +80,13 @@ def encode(property_: Property, encoding: Encoding) -> Formula:
     return _encode(without_intervals(property_), encoding, BEGINNING)
 
 
+def encode_from(event: Formula, property_: Property, encoding: Encoding) -> Formula:
+    """`encode` of `property_` on the rest of the run from the first step with `event` on; true if there is none."""
+    whole = without_intervals(After(event, property_))
+    assert isinstance(whole, After)
+    return _first(event, _encode(whole.body, encoding, AfterOpened(BEGINNING, event)))
+
+
 def _encode(property_: Property, encoding: Encoding, clock: Clock | None) -> Formula:
     """`property_` in core LTL, where `clock` is that of its place."""
     match property_:

@@ -41,17 +41,17 @@ class _Own(NamedTuple):
 
 
 class Game:
-    """The moves between the joint places of `arena`; if `ordered`, with the order of clocks of one property.
+    """The moves between the joint places of `arena`; if `ordered`, with the order of the clocks of a property.
 
     Levels of diagrams are first the atoms that are held, then the news and the timed atoms, which a move decides.
     """
 
-    def __init__(self, arena: Arena, *, ordered: bool = False) -> None:
+    def __init__(self, arena: Arena, diagrams: Diagrams | None = None, *, ordered: bool = False) -> None:
         self.arena = arena
         self._machines: list[Any] = [
             OrderedMachine(p.time, exact=True) if ordered and p.has_order else p.time for p in arena.parts
         ]
-        self.diagrams = Diagrams()
+        self.diagrams = diagrams or Diagrams()
         decided = (a for p in arena.parts for a in (*p.news, *(a for t in p.time.trackers for a in t.atoms)))
         self.atoms = tuple(arena.read)
         names = dict.fromkeys((*self.atoms, *decided))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from functools import cached_property
+from functools import cache, cached_property
 
 from ltlc.analysis.atom_words import atom_text
 from ltlc.analysis.errors import NotDecidedError
@@ -17,7 +17,7 @@ from ltlc.analysis.subjects import Study, Subject
 from ltlc.analysis.wording import listed
 from ltlc.dataclass import dataclass
 from ltlc.semantics.arenas import Arena, Outcome, Part, Ticks
-from ltlc.semantics.diagrams import Diagram
+from ltlc.semantics.diagrams import Diagram, Diagrams
 from ltlc.semantics.durations import duration_text
 from ltlc.semantics.words import Letter
 from ltlc.specification import evaluation
@@ -120,13 +120,28 @@ def shortest_play(solution: Solution, out: str, commands: Diagram) -> tuple[Lett
 
 
 def in_words(guarded: Guarded, letters: Diagram) -> str:
-    """Some letters in the words of their conditions; of several sorts, one of the simplest."""
+    """Some letters in the words of their conditions, to go on with; of several sorts, one of the simplest."""
     game = guarded.solution.game
     atoms = conditions_held(guarded.guards, (subject.specification for subject in guarded.subjects))
-    sorts = [answers for answers, holds in game.diagrams.paths(letters) if holds]
-    sort = min(sorts, key=len)
+    sort = _simplest(game.diagrams, letters)
+    others = (game.diagrams.given({level: not holds}, letters) for level, holds in sort.items())
+    is_all = all(other == game.diagrams.false for other in others)
     words = [_condition(game.atoms[level], atoms, holds=answer) for level, answer in sort.items()]
-    return f"{'for example ' if len(sorts) > 1 else ''}where {' and '.join(words) or 'anything holds'}"
+    return f"{'' if is_all else ', for example'} where {' and '.join(words) or 'anything holds'}"
+
+
+def _simplest(diagrams: Diagrams, letters: Diagram) -> dict[int, bool]:
+    """A shortest way through a diagram to where it is true: the levels with their answers."""
+
+    @cache
+    def shortest(node: Diagram) -> dict[int, bool] | None:
+        if diagrams.is_terminal(node):
+            return {} if diagrams.value(node) else None
+        level, low, high = diagrams.split(node)
+        found = [{level: h, **rest} for h, side in ((False, low), (True, high)) if (rest := shortest(side)) is not None]
+        return min(found, key=len, default=None)
+
+    return shortest(letters) or {}
 
 
 def _condition(name: str, atoms: Mapping[str, Atom], *, holds: bool) -> str:

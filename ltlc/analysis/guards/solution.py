@@ -194,8 +194,8 @@ def solve(arena: Arena) -> Solution:
     solution = _solved(Game(arena))
     if not any(part.has_order for part in arena.parts):
         return solution
-    ordered = _solved(Game(arena, ordered=True))
-    return ordered if _lets_more(ordered, solution) else solution
+    ordered = _solved(Game(arena, solution.game.diagrams, ordered=True))
+    return ordered if any(_lets_more(ordered, solution, out) for out in arena.outs) else solution
 
 
 def _solved(game: Game) -> Solution:
@@ -207,17 +207,10 @@ def _solved(game: Game) -> Solution:
     return solution
 
 
-def _lets_more(one: Solution, other: Solution) -> bool:
-    """Whether `one` lets commands through that `other` never does."""
-    outs = one.game.arena.outs
-    return any(_count(one, out) > _count(other, out) for out in outs)
-
-
-def _count(solution: Solution, out: str) -> int:
-    """How many letters are let through."""
-    game, levels = solution.game, len(solution.game.atoms)
-    paths = game.diagrams.paths(solution.let_through(out))
-    return sum(1 << (levels - len(answers)) for answers, value in paths if value)
+def _lets_more(one: Solution, other: Solution, out: str) -> bool:
+    """Whether `one` lets commands through that `other` never does; they share their diagrams."""
+    d = one.game.diagrams
+    return d.conjunction(one.let_through(out), d.negation(other.let_through(out))) != d.false
 
 
 def reachable(game: Game) -> Iterable[Joint]:

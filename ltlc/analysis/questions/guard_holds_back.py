@@ -39,7 +39,7 @@ def _finding(guarded: Guarded, guard: Guard) -> Finding:
     return Finding(
         "LTL612",
         guard.span,
-        f"no command passes {in_words(cause, commands)}, though it violates nothing by itself",
+        f"no command passes{in_words(cause, commands)}, though it violates nothing by itself",
         label=f"{names} are at odds there" if len(cause.kept) > 1 else f"{names} could not be kept any more",
         secondary=tuple(Label(subject.specification.span) for subject in cause.kept),
         help=AT_ODDS if len(cause.kept) > 1 else TO_ANSWER,

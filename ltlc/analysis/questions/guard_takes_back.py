@@ -51,7 +51,7 @@ def _finding(guarded: Guarded, guard: Guard, taken: dict[int, Diagram]) -> Findi
     return Finding(
         "LTL613",
         guard.span,
-        f"commands pass {in_words(guarded, letters)}, and are taken back later",
+        f"commands pass{in_words(guarded, letters)}, and are taken back later",
         label=f"{listed([f'`{subject.label}`' for subject in subjects])} gives each of them some time",
         secondary=tuple(Label(subject.specification.span) for subject in subjects),
         help="to hold them back from the start, add a property about new commands: `always (new s and P implies Q)`",

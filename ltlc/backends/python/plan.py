@@ -153,6 +153,8 @@ def _property(plan: _Plan, compiled: Compiled) -> Group:
         arguments.append(tuple_of(map(literal, owed), "obligations=("))
     if Verdict.VIOLATED in compiled.monitor.verdicts:
         arguments += _reasons(plan, compiled)
+    if written := list(_written(specification)):
+        arguments.append(Group("written={", tuple(written), "}"))
     if specification.requirement:
         arguments.append(_requirement(specification.requirement))
     match specification.slicing:
@@ -165,6 +167,13 @@ def _property(plan: _Plan, compiled: Compiled) -> Group:
         case _:
             assert_never(specification.slicing)
     return Group("MonitoredProperty(", tuple(arguments), ")", wide=True)
+
+
+def _written(specification: PropertySpecification) -> Iterator[str]:
+    """The news of fields that the author asks of the whole: `new pos` where the input is called `new pos.x`."""
+    for wanted in specification.inputs():
+        if isinstance(wanted, New) and wanted.signal.heard != wanted.signal.name:
+            yield f"{literal(f'new {wanted.signal.name}')}: {literal(f'new {wanted.signal.heard}')}"
 
 
 def _requirement(stated: Requirement) -> Group:

@@ -14,7 +14,7 @@ from ltlc.compiler import Compiled
 from ltlc.dataclass import dataclass
 from ltlc.program import lowering
 from ltlc.program.properties import Words, words
-from ltlc.semantics.timed_atoms import Age, Clock, Historically
+from ltlc.semantics.timed_atoms import Age, Clock, Historically, Once
 from ltlc.semantics.trackers import trackers_of
 from ltlc.specification import expressions as e
 from ltlc.specification.atoms import Atom
@@ -74,7 +74,8 @@ class Reasons:
             if isinstance(tracker.subject, Clock):
                 said = tuple(lateness(tracker.subject, bound) for bound in tracker.bounds)
             texts, bounds = tuple_of(map(literal, said)), tuple_of(map(str, tracker.bounds))
-            more = ["True"] if isinstance(tracker.subject, Age) else []
+            is_recent = ["is_recent=True"] if isinstance(tracker.subject, Once) else []
+            more = ["True"] if isinstance(tracker.subject, Age) else is_recent
             yield Group("Clock(", (literal(name), texts, bounds, str(late), *more), ")")
         for name, count in zip(names[len(clocks) :], self.compiled.specification.counts(), strict=True):
             yield Group("Clock(", (literal(name), tuple_of([literal(count.name)]), "()", "False"), ")")

@@ -109,7 +109,8 @@ def _imports(node: ast.stmt) -> list[Import]:
         case ast.Import(names):
             return [Import(alias.name) for alias in names]
         case ast.ImportFrom(str(module), names):
-            return [Import(module, ast.unparse(alias)) for alias in names]
+            standard = "dataclasses" if module == "ltlc.dataclass" else module  # which does the same
+            return [Import(standard, ast.unparse(alias)) for alias in names]
         case _:
             return []
 

@@ -30,6 +30,9 @@ from typing import Any, NoReturn, Self, TypeVar
 from ltlc.base.limits.budget import Budget, Exceeded, Limit
 from ltlc.dataclass import dataclass
 
+if sys.platform != "win32":
+    import resource
+
 Result = TypeVar("Result")
 
 Watch = Callable[[int, int], None]
@@ -39,7 +42,8 @@ NESTING = 10_000
 """Python's recursion limit in a child: formulas may be nested a few thousand deep there."""
 
 PATIENCE = 0.05
-"""Seconds that jobs wait for a child to be free before another one is started, as long as there are CPUs."""
+"""Seconds that jobs wait for a child to be free before another one is started, as long as there are CPUs: most jobs
+take less time than starting one."""
 
 LEAST_SECONDS = 0.01
 """A job that has less time than this is not begun."""
@@ -55,17 +59,22 @@ _NUMBER = struct.Struct(">Q")
 
 
 def run_all(
-    jobs: Sequence[Callable[[], Result]], budget: Budget, seconds: float = math.inf, watch: Watch | None = None
+    jobs: Sequence[Callable[[], Result]],
+    budget: Budget,
+    seconds: float = math.inf,
+    watch: Watch | None = None,
+    patience: float = PATIENCE,
 ) -> list[Result | Exceeded]:
     """The result of each job, in order; each may use `budget`, and all together `seconds` of time on the clock.
 
+    Jobs wait `patience` seconds for a child to be free; none, where each of them takes long.
     An exception of a job is raised here, except for those that mean a limit; results and exceptions must be picklable.
     Whatever happens here, an interrupt included, no child is left behind. Raises OSError where there is no `os.fork`
     (Windows); where there is no `/proc` (macOS), memory is not bounded.
     """
     _refuse_without_fork()
     outcomes: dict[int, Any] = {}
-    with _Children(jobs, budget, time.monotonic() + seconds) as children:
+    with _Children(jobs, budget, time.monotonic() + seconds, patience=patience) as children:
         while len(outcomes) < len(jobs):
             outcomes.update(children.reports())
             if watch:
@@ -116,12 +125,18 @@ class _Children:
     """The children that have a job, by the pipe on which they answer; on leaving, they are ended."""
 
     def __init__(
-        self, jobs: Sequence[Callable[[], Any]], budget: Budget, deadline: float, workers: int | None = None
+        self,
+        jobs: Sequence[Callable[[], Any]],
+        budget: Budget,
+        deadline: float,
+        workers: int | None = None,
+        patience: float = PATIENCE,
     ) -> None:
         self._jobs = jobs
         self._budget = budget
         self._deadline = deadline
         self._workers = workers or _cpus()
+        self._patience = patience
         self._waiting = list(range(len(jobs)))[::-1]
         self._running: dict[int, _Child] = {}
         self._last_start = -math.inf
@@ -137,7 +152,7 @@ class _Children:
 
     def reports(self) -> Iterator[tuple[int, Any]]:
         """The numbers and outcomes of the jobs that were done since the last time, after a short wait for one."""
-        if self._waiting and self._is_another_wanted():
+        while self._waiting and self._is_another_wanted():
             self._start()
         for key, _ in self._selector.select(PATIENCE):
             child = self._running[key.fd]
@@ -151,7 +166,7 @@ class _Children:
                 yield number, pickle.loads(answer)
 
     def _is_another_wanted(self) -> bool:
-        late = time.monotonic() - self._last_start >= PATIENCE
+        late = time.monotonic() - self._last_start >= self._patience
         return not self._running or (late and len(self._running) < self._workers)
 
     def _start(self) -> None:
@@ -257,8 +272,6 @@ def _fork() -> int:
 
 def _settle() -> None:
     """Take on the system's default handling of signals, and silence: C++ reports its end on stderr."""
-    import resource  # here, since Windows has none
-
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGALRM):
         signal.signal(number, signal.SIG_DFL)
     signal.pthread_sigmask(signal.SIG_SETMASK, ())
@@ -282,8 +295,6 @@ def _die_with_parent() -> None:
 
 def _bound_memory(megabytes: int) -> None:
     """Let this process take so much memory beside what it has."""
-    import resource
-
     statistics = Path("/proc/self/statm")
     if statistics.exists():
         present = int(statistics.read_text(encoding="ascii").split()[0]) * resource.getpagesize()

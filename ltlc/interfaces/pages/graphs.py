@@ -25,7 +25,7 @@ PARTS = 16
 """A label may stand beside so many places along an edge."""
 
 BOW, MOST_BOWS = 15, 12
-"""An edge bows by so much more, and so often at most, until it passes no state."""
+"""An edge bows by so much more, and so often at most, until it passes no state and no name of one."""
 
 CROSSED = 30
 """What it costs a label to cover a point of another edge, where covering a state or a label costs its area."""
@@ -118,6 +118,7 @@ _TIP = (
     "</marker></defs>"
 )
 _STROKE = 'fill="none" stroke="black"'
+_HALO = 'paint-order="stroke" stroke="white" stroke-width="4"'
 
 
 def _places(count: int, edges: Sequence[Edge]) -> dict[int, _Point]:
@@ -174,7 +175,7 @@ def _state(number: int, place: _Point, verdict: Verdict, is_passed: bool, is_las
         f'<g class="{classes}"><title>state {number}: {name}</title>{ring}<circle {at} r="{RADIUS}" fill="{colour}" '
         f'stroke="black" stroke-width="{width}"/><text class="number" x="{place.x:.0f}" y="{place.y + 4:.0f}" '
         f'text-anchor="middle">{number}</text><text class="name" x="{place.x:.0f}" y="{below:.0f}" '
-        f'text-anchor="middle" font-size="10">{name}</text></g>'
+        f'text-anchor="middle" font-size="10" {_HALO}>{name}</text></g>'
     )
 
 
@@ -198,7 +199,7 @@ def _edge(edge: Edge, path: str, label: _Box, tip: str) -> str:
     return (
         f'<g class="{classes}"><title>{edge.source} → {edge.target}: {escape(whole)}</title>'
         f'<path d="{path}" {_STROKE} {tip}{dashes}{width}/>'
-        f'<text text-anchor="middle" paint-order="stroke" stroke="white" stroke-width="4">{spans}</text></g>'
+        f'<text text-anchor="middle" {_HALO}>{spans}</text></g>'
     )
 
 
@@ -230,13 +231,13 @@ def _arc(places: Mapping[int, _Point], edge: Edge) -> _Way:
     start, end = places[edge.source], places[edge.target]
     length = math.hypot(end.x - start.x, end.y - start.y)
     along = _Point((end.x - start.x) / length, (end.y - start.y) / length)
-    others = [place for state, place in places.items() if state not in (edge.source, edge.target)]
+    others = [box for q, place in places.items() if q not in (edge.source, edge.target) for box in _covered(place)]
     least = 18 + 0.12 * length + (50 if edge.by_time else 0)
     for bow in (least + BOW * n for n in range(MOST_BOWS)):
         middle = _Point((start.x + end.x) / 2 + along.y * bow, (start.y + end.y) / 2 - along.x * bow)
         first, last = _rim(start, middle), _rim(end, middle)
         points = tuple(_on(first, middle, last, n / PARTS) for n in range(1, PARTS))
-        if all(math.hypot(p.x - other.x, p.y - other.y) > RADIUS + 10 for p in points for other in others):
+        if not any(box.covers(point) for box in others for point in points):
             break
     path = f"M{first.x:.1f},{first.y:.1f} Q{middle.x:.1f},{middle.y:.1f} {last.x:.1f},{last.y:.1f}"
     label = _box(edge, middle)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
+from ltlc.backends.clock_words import lateness
 from ltlc.backends.guards import Cube, TooManyCubesError, cubes
 from ltlc.compiler import Compiled
 from ltlc.dataclass import dataclass
@@ -15,7 +16,8 @@ from ltlc.runtime.properties import Moment
 from ltlc.runtime.reports import printable
 from ltlc.runtime.times import Scale
 from ltlc.semantics.monitor import Monitor, below
-from ltlc.semantics.trackers import trackers_of
+from ltlc.semantics.timed_atoms import Clock
+from ltlc.semantics.trackers import Tracker, trackers_of
 
 MOST_STATES = 20
 """Of a monitor with more states, only the way that was taken is shown."""
@@ -58,9 +60,15 @@ def _alone(told: Words, edges: Sequence[Edge], letters: tuple[tuple[str, str], .
 
 def _conditions(compiled: Compiled, told: Words) -> list[str]:
     """What the monitor asks: its conditions, and then whether the bounds on its clocks have passed."""
-    clocks = [tracker.atoms[0] for tracker in trackers_of(compiled.formula) if tracker.bounds]
-    asked = (*told.atoms, *clocks)
+    asked = (*told.atoms, *(_of_clock(each) for each in trackers_of(compiled.formula) if each.bounds))
     return [printable(compiled.specification.as_written(name)) for name in asked]
+
+
+def _of_clock(tracker: Tracker) -> str:
+    """What a clock decides when its first bound passes."""
+    if isinstance(tracker.subject, Clock):
+        return lateness(tracker.subject, tracker.bounds[0])
+    return tracker.atoms[0]
 
 
 def _letter(number: int) -> str:

@@ -36,6 +36,7 @@ Workers = Callable[[Judge, Sequence[Location]], Iterator[tuple[int, Outcome | Fa
 
 def judge_all(judge: Judge, places: Sequence[Location], workers: Workers) -> Iterator[Outcome]:
     """What each of the recordings at `places` shows, in the order in which they get ready."""
+    judge.prepare()
     waiting = list(places)
     failures: dict[Location, Failure] = {}
     for tries in range(1, TRIES + 1):

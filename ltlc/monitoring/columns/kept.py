@@ -11,9 +11,10 @@ from ltlc.monitoring.columns.arrays import ByStep, held_for
 from ltlc.monitoring.columns.prepared import Prepared
 from ltlc.monitoring.columns.series import Given, Steps, UnsupportedError
 from ltlc.monitoring.columns.values import arrays_at, not_numbers, value
+from ltlc.monitoring.later import Later
 from ltlc.program.expressions import Expression, Held
+from ltlc.runtime.courses import Course
 from ltlc.runtime.sampling import Value
-from ltlc.runtime.tracking import Track
 from ltlc.specification.wire import EXACT
 
 FIRST = 64
@@ -26,7 +27,7 @@ Taken = tuple[Value | None, ...]
 class KeptLetters:
     """Where the letter of a property is not that of the step before, as long as no other values are taken."""
 
-    def __init__(self, track: Track, of: Prepared, steps: Steps) -> None:
+    def __init__(self, track: Course, of: Prepared, steps: Steps) -> None:
         """Raises UnsupportedError."""
         self._track, self._of, self._count = track, of, len(steps)
         self._steps = steps
@@ -59,6 +60,8 @@ class KeptLetters:
         return found
 
     def _taken(self) -> Taken:
+        if isinstance(self._track, Later) and self._track.is_out:
+            return (None,) * len(self._of.openings)
         monitor, kept = self._track.monitor, self._track.property.kept
         return tuple(
             None if monitor.state in latest else getattr(monitor, each.attribute)

@@ -46,7 +46,7 @@ def walk_and_leap(forward: Forward, found: Stretch) -> None:
 
 def _leap(forward: Forward, found: Stretch, first: int, end: int) -> int:
     """Take steps from the `first` on, and none after the `end`, which is one of them; the step that comes then."""
-    if end <= first or forward.track.decided_at is not None:
+    if end <= first or not forward.can_leap:
         return first
     part, times, monitor = found.part(first, end), found.times[first : end + 1], forward.track.monitor
     passed, settings = run_clocks(forward.tables, part.atoms, end - first, forward.state())

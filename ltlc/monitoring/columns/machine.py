@@ -145,12 +145,12 @@ def machine(
     steps = _outcomes(control, [state.step for state in control.states], holds)
     edges = np.array([outcome.state for outcome in control.outcomes])[steps]
     held = {**holds, **{name: np.zeros_like(allowed) for name in news}}
-    clocks = _settings(control, steps, holds)
-    if clocks is None or not _settles(control, steps, edges, held)[:, allowed].all():
-        return None
-    events = [_events(slot, holds) for slot in slots]
     verdicts = [state.verdict for state in control.states]
     is_final = np.array([verdict.is_permanent for verdict in verdicts])
+    clocks, settles = _settings(control, steps, holds), _settles(control, steps, edges, held) | is_final[edges]
+    if clocks is None or not settles[:, allowed].all():
+        return None
+    events = [_events(slot, holds) for slot in slots]
     states, table, opened = [(-1, 0)], [], []
     if control.clocks:  # Clocks that come due lead to states that steps alone do not.
         states += [(state, bits) for state in range(len(is_final)) for bits in range(1 << len(slots))]

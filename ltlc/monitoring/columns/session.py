@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import field
 from time import perf_counter_ns
 
@@ -10,6 +10,7 @@ import numpy as np
 
 from ltlc.dataclass import dataclass
 from ltlc.inputs.recordings.blocks import Block, Ragged
+from ltlc.monitoring.columns.afterwards import Afterwards
 from ltlc.monitoring.columns.atoms import Compared, prepare
 from ltlc.monitoring.columns.bits import unpack
 from ltlc.monitoring.columns.derived import derive
@@ -20,7 +21,7 @@ from ltlc.monitoring.columns.series import Columns, Rows, Steps, UnsupportedErro
 from ltlc.monitoring.columns.slices import BySlices, refusal
 from ltlc.monitoring.columns.ticks import MOST, Seen, block_of, times_of
 from ltlc.monitoring.columns.tracks import Forward, Stretch, count_invalid, has_ages, stretch, take_together
-from ltlc.monitoring.columns.walk import hear, walk, walk_on
+from ltlc.monitoring.columns.walk import hear, walk
 from ltlc.monitoring.later import is_followed, later_of, letters_of
 from ltlc.runtime.properties import MonitoredProperty
 from ltlc.runtime.rows import ByRows
@@ -41,19 +42,25 @@ UNTIL_IT_BEGINS = "`_timeout_` counts from the first step"
 class Way:
     """How a property is judged: by columns, or, for the reasons in `because` and in so many blocks, by rows.
 
-    Those with the same number `reads` have the same steps. If it is judged for each id, `slices` do that by columns, or
-    it has the reason why rows do.
+    Those with the same number `reads` have the same steps. What comes after a violation is judged by the machine that
+    is prepared `again`. If it is judged for each id, `slices` do that by columns, or it has the reason why rows do.
     """
 
     track: Track
     window: Window
     of: Prepared
+    again: Prepared
     forward: Forward | None
     reads: int
     because: dict[str, int] = field(default_factory=dict)
     blocks: int = 0
     nanoseconds: int = 0
     slices: BySlices | str = ""
+
+    @property
+    def is_stepped(self) -> bool:
+        """Whether not all that judges it has tables."""
+        return self.forward is None or (later_of(self.track) is not None and self.again.tables is None)
 
     def count(self, reason: str) -> None:
         """A block more was judged by rows, for this reason."""
@@ -81,9 +88,14 @@ class ByBlocks:
     it is, and so is a block, for those properties concerned, in which something is that columns do not do exactly.
     """
 
-    def __init__(self, session: Session, prepared: Sequence[Prepared]) -> None:
-        """Take `session` forward, whose plan has the properties that are `prepared`."""
-        self._session = session
+    def __init__(
+        self, session: Session, prepared: Sequence[Prepared], again: Mapping[str, Prepared] | None = None
+    ) -> None:
+        """Take `session` forward, whose plan has the properties that are `prepared`.
+
+        Of those with a machine that restarts, `again` has that one prepared, by label.
+        """
+        self._session, again = session, again or {}
         is_listed = any(track.verdicts is not None for track in session.tracks)
         self._why = "the verdict after each step is listed" if is_listed else ""
         reads: dict[object, int] = {}
@@ -93,6 +105,7 @@ class ByBlocks:
                 track,
                 window,
                 of := by_track[id(track)],
+                again.get(track.property.label, of),
                 None if of.tables is None or track.observer is not None else Forward(track, of, of.tables),
                 reads.setdefault((_reads(track.property), has_ages(track)), len(reads)),
             )
@@ -125,7 +138,7 @@ class ByBlocks:
         if not found and of.tables is not None:
             [topic] = slices.cut.keys
             found = BySlices(slices, of, of.tables, self._session.fields[topic], others)
-        return Way(slices.track, self._session.sampler.window(()), of, None, -1, slices=found)
+        return Way(slices.track, self._session.sampler.window(()), of, of, None, -1, slices=found)
 
     def take(self, block: Block) -> None:
         """Take the rows of `block`, all of which come after those before."""
@@ -215,7 +228,7 @@ class ByBlocks:
 
     def _steps(self, way: Way, columns: Columns, by_reads: dict[int, Steps | UnsupportedError]) -> Steps | None:
         """The steps of a property; None, with the reason kept, if rows have to do."""
-        if way.of.counts and way.forward is None:
+        if way.of.counts and way.is_stepped:
             way.count("it counts, and is stepped")
             return None
         if way.reads not in by_reads:
@@ -256,13 +269,15 @@ class ByBlocks:
 
         What comes back are the ids of those properties that did; of others, the reason is kept.
         """
-        taken = [(way, part) for way, steps in found if (part := self._stretch(way, steps, rows)) is not None]
-        start, bases = perf_counter_ns(), [way.track.steps for way, _ in taken]
-        untimed = ((way.forward, part) for way, part in taken if not way.track.property.timed)
+        taken = [(way, *both) for way, steps in found if (both := self._stretch(way, steps, rows)) is not None]
+        start = perf_counter_ns()
+        for _, _, afterwards in taken:
+            afterwards.begin()
+        untimed = ((way.forward, part) for way, part, _ in taken if not way.track.property.timed)
         together = [(forward, part) for forward, part in untimed if forward is not None]
         take_together(together)
         each = (perf_counter_ns() - start) // max(1, len(together))
-        for (way, part), base in zip(taken, bases, strict=True):
+        for way, part, afterwards in taken:
             start = perf_counter_ns()
             if way.forward is None:
                 walk(way.track, part)
@@ -270,18 +285,17 @@ class ByBlocks:
                 walk_and_leap(way.forward, part)
             else:
                 way.nanoseconds += each
-            if (later := later_of(way.track)) is not None:
-                walk_on(later, part, later.steps - base)
+            afterwards.follow(part)
             way.track.hold(int(rows.times[-1]))
             way.track.is_settled = way.track.is_settled and not len(part.steps)
             way.nanoseconds += perf_counter_ns() - start
-        return {id(way) for way, _ in taken}
+        return {id(way) for way, _, _ in taken}
 
-    def _stretch(self, way: Way, steps: Steps, rows: Columns) -> Stretch | None:
+    def _stretch(self, way: Way, steps: Steps, rows: Columns) -> tuple[Stretch, Afterwards] | None:
         """The valid steps of a property, the others counted; None, with the reason kept, if rows have to do."""
         start = perf_counter_ns()
         try:
-            found = stretch(way.track, way.of, steps)
+            found, afterwards = stretch(way.track, way.of, steps), Afterwards(way.track, way.again, steps)
         except UnsupportedError as error:
             way.count(str(error))
             return None
@@ -293,7 +307,7 @@ class ByBlocks:
         if (letters := letters_of(way.track)) is not None:
             letters.take(found.times, [unpack(bits, len(found)) for bits in found.atoms])
         way.nanoseconds += perf_counter_ns() - start
-        return found
+        return found, afterwards
 
     def _skip(self, way: Way, steps: Steps, rows: Columns) -> None:
         """Count the messages at which something that a property waits for had no value, as rows do."""

@@ -19,7 +19,7 @@ from ltlc.monitoring.columns.prepared import Prepared
 from ltlc.monitoring.columns.series import Steps, UnsupportedError
 from ltlc.monitoring.columns.tables import Tables
 from ltlc.monitoring.columns.values import not_numbers, predicate, value
-from ltlc.monitoring.later import is_followed, letters_of
+from ltlc.monitoring.later import Later, is_followed, later_of, letters_of
 from ltlc.runtime.courses import Course
 from ltlc.runtime.episodes import Episodes
 from ltlc.runtime.properties import Moment, Opening, Scope
@@ -62,7 +62,7 @@ class Stretch:
 
 
 def stretch(track: Track, of: Prepared, steps: Steps) -> Stretch:
-    """The valid ones of `steps`; where `track` is decided, without its atoms. Raises UnsupportedError."""
+    """The valid ones of `steps`; where `track` is decided for good, without its atoms. Raises UnsupportedError."""
     if not len(steps):
         return Stretch(steps, None, ())
     is_judged = is_followed(track)
@@ -72,7 +72,8 @@ def stretch(track: Track, of: Prepared, steps: Steps) -> Stretch:
             raise UnsupportedError("values at openings, of which there is to be evidence")
         return Stretch(steps, None, (), KeptLetters(track, of, steps))
     found = tuple([bits_of(atom, steps) for atom in of.atoms]) if is_judged else ()
-    counted = of.counts if track.decided_at is None else ()
+    course = later_of(track) or track
+    counted = of.counts if course.decided_at is None else ()
     holds = [np.broadcast_to(np.asarray(value(each.of.condition, steps), np.bool_), len(steps)) for each in counted]
     mask, numbers = not_numbers(of.guards, steps), None
     if mask is not None:
@@ -84,7 +85,7 @@ def stretch(track: Track, of: Prepared, steps: Steps) -> Stretch:
         found = tuple(pack(unpack(bits, len(steps)).take(numbers)) for bits in found)
         holds = [each.take(numbers) for each in holds]
     times = steps.times if numbers is None else steps.times[numbers]
-    counts = tuple(Count(each, track.monitor, of_it, times) for each, of_it in zip(counted, holds, strict=True))
+    counts = tuple(Count(each, course.monitor, of_it, times) for each, of_it in zip(counted, holds, strict=True))
     return Stretch(steps, numbers, (*found, *(pack(each.is_reached) for each in counts)), None, counts)
 
 
@@ -134,11 +135,17 @@ def _reasons(track: Track, steps: Steps, invalid: Places) -> Iterator[tuple[str,
 
 @dataclass(frozen=True)
 class Forward:
-    """Takes a track forward by the `tables` of its property."""
+    """Takes a property forward by its `tables`."""
 
-    track: Track
+    track: Course
     of: Prepared
     tables: Tables
+
+    @property
+    def can_leap(self) -> bool:
+        """Whether nothing but a verdict for good is waited for, or the next violation."""
+        lasts = isinstance(self.track, Later) and self.track.lasts
+        return self.track.decided_at is None and not lasts
 
     def finish(self, passed: Passed, found: Stretch) -> None:
         """Take the steps of `found` with their table entries, and the one that decides by itself."""
@@ -161,7 +168,7 @@ class Forward:
         if not passed.steps:
             return
         track = self.track
-        if track.began is None:
+        if isinstance(track, Track) and track.began is None:
             track.began = found.steps.time(found.number(0))
         track.monitor.state, is_open = self.tables.machine.states[passed.state]
         track.monitor.verdict = track.verdict = self.of.states[track.monitor.state].verdict

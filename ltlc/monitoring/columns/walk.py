@@ -18,7 +18,6 @@ from ltlc.monitoring.columns.bits import unpack
 from ltlc.monitoring.columns.kept import KeptLetters
 from ltlc.monitoring.columns.series import Steps
 from ltlc.monitoring.columns.tracks import Stretch, has_ages, values_at
-from ltlc.monitoring.later import Later
 from ltlc.runtime.courses import Course
 from ltlc.runtime.sampling import New
 from ltlc.runtime.times import NEVER
@@ -95,11 +94,6 @@ def walk(track: Track, found: Stretch) -> None:
     steps = Walk(track, found, found.kept or Changes(found))
     steps.take(0, len(found))
     steps.finish()
-
-
-def walk_on(later: Later, found: Stretch, first: int) -> None:
-    """Take the steps of `found` from the `first` on, after the one that violated the property."""
-    Walk(later, found, Changes(found)).take(first, len(found))
 
 
 class Changes:

@@ -28,7 +28,8 @@ from ltlc.monitoring.columns.prepared import Prepared, prepare_all
 from ltlc.monitoring.columns.session import ByBlocks
 from ltlc.monitoring.judging.part import Part
 from ltlc.monitoring.judging.violations import violations_report, violations_text
-from ltlc.monitoring.later import JudgedTrack, can_recur
+from ltlc.monitoring.later import JudgedTrack
+from ltlc.monitoring.restarting import Restarting, can_recur, restarting
 from ltlc.runtime import documents, junit, reports, sampling
 from ltlc.runtime.properties import MonitoredProperty
 from ltlc.runtime.rows import ByRows
@@ -220,6 +221,10 @@ class Judge:
     evidence: Evidence | None = None
     cutting: Cutting | None = None
 
+    def prepare(self) -> None:
+        """Make what takes other processes, before several of them judge by copies."""
+        self.restarting  # noqa: B018
+
     def judge(self, path: Path, watchers: Sequence[Watcher] = (), name: str = "") -> RunReport:
         """What the recording at `path` shows, which has a `name` among others.
 
@@ -231,12 +236,12 @@ class Judge:
             return RunReport(str(path), None, (error.diagnostic,), **self._made_of(path))
         found = self.remarks_on(path, recording)
         plan, observe = self.plan(recording.columns), Trailing if self.keep_trails else None
-        session = Session(plan, self.keep_verdicts, observe, self._track)
+        session = Session(plan, self.keep_verdicts, observe, self._maker(recording.columns))
         absent = (name for name in readings(plan) if name not in recording.columns)
         session.absences = {name: recording.absence(name) for name in absent}
         digests = None if self.evidence is None else self.evidence.digests(path)
         whole = self._whole_runs(recording.columns)
-        blocks, watch, start = ByBlocks(session, self.prepared), Stopwatch(), perf_counter_ns()
+        blocks, watch, start = ByBlocks(session, self.prepared, self.prepared_again), Stopwatch(), perf_counter_ns()
         damage, part = None, Part(path, recording, self.reading)
         try:
             self._run(blocks, whole, path, part, watch, recording.columns, watchers)
@@ -299,26 +304,48 @@ class Judge:
         """What judging by columns needs of the properties."""
         return prepare_all(self.compiled, self.specification.source)
 
-    def _track(self, property_: MonitoredProperty, keep: bool, observer: Observer | None) -> Track:
-        letters = None if self.evidence is None else self.evidence.letters(property_.label)
-        return JudgedTrack(property_, keep, observer, property_.label in self._recurring, letters)
+    @cached_property
+    def prepared_again(self) -> dict[str, Prepared]:
+        """The same of those machines that restart, by label."""
+        prepared = prepare_all(self.restarting, self.specification.source)
+        return {each.specification.label: of for each, of in zip(self.restarting, prepared, strict=True)}
+
+    def _maker(self, columns: Collection[str]) -> Callable[[MonitoredProperty, bool, Observer | None], Track]:
+        """Makes tracks, where samples of these signals come in themselves."""
+        again = self.again(columns)
+        recurring = {each.specification.label for each in self.compiled if can_recur(each, again)}
+
+        def track(property_: MonitoredProperty, keep: bool, observer: Observer | None) -> Track:
+            letters = None if self.evidence is None else self.evidence.letters(property_.label)
+            is_all = self.finds_all and property_.label in recurring
+            return JudgedTrack(property_, keep, observer, is_all, letters, again.get(property_.label))
+
+        return track
 
     @cached_property
-    def _recurring(self) -> frozenset[str]:
-        """The labels of the properties all violations of which are looked for."""
-        return frozenset(each.specification.label for each in self.compiled if self.finds_all and can_recur(each))
+    def restarting(self) -> list[Restarting]:
+        """The properties that need a machine that restarts."""
+        return restarting(self.compiled) if self.finds_all else []
 
     @cached_property
-    def _plans(self) -> dict[frozenset[str], Plan]:
-        """Those made so far, by the signals that come in themselves."""
+    def _plans(self) -> dict[tuple[bool, frozenset[str]], Plan]:
+        """Those made so far: whether its machines restart, by the signals that come in themselves."""
         return {}
 
     def plan(self, columns: Collection[str]) -> Plan:
         """What is monitored where samples of these signals come in themselves."""
-        given = self._given(columns)
-        if given not in self._plans:
-            self._plans[given] = load_plan(self.compiled, self.specification, given)
-        return self._plans[given]
+        return self._plan(self.compiled, False, columns)
+
+    def again(self, columns: Collection[str]) -> dict[str, MonitoredProperty]:
+        """The properties with a machine that restarts, by label."""
+        made = self._plan(self.restarting, True, columns).properties if self.restarting else ()
+        return {each.label: each for each in made}
+
+    def _plan(self, compiled: Sequence[Compiled], restarts: bool, columns: Collection[str]) -> Plan:
+        key = restarts, self._given(columns)
+        if key not in self._plans:
+            self._plans[key] = load_plan(compiled, self.specification, key[1])
+        return self._plans[key]
 
     def _given(self, columns: Collection[str]) -> frozenset[str]:
         """The signals that are computed from others and come in themselves."""

@@ -16,7 +16,7 @@ from ltlc.semantics.verdicts import Verdict
 
 
 def violations_report(session: Session, track: Track) -> dict[str, Any]:
-    """The violations of a property in the JSON document of `ltlc run`; null if no more than the first is looked for."""
+    """The violations of a property in the JSON document of `ltlc run`; null if no more than the first is known."""
     found = all_violations(track)
     if found is None or session.time is None:
         return {"violations": None}
@@ -63,7 +63,7 @@ class Spread:
 
 
 def spread(session: Session, track: Track) -> Spread | None:
-    """How the violations of a property are spread; None if there is none, or if only the first is looked for."""
+    """How the violations of a property are spread; None if there is none, or if only the first is known."""
     found, end = all_violations(track), session.time
     if not found or end is None:
         return None
@@ -71,11 +71,9 @@ def spread(session: Session, track: Track) -> Spread | None:
 
 
 def only_first(track: Track) -> str:
-    """Why no violation after the first is looked for; empty if all are, if there is none, and for properties of ids."""
-    if track.verdict is not Verdict.VIOLATED or track.slices is not None or all_violations(track) is not None:
-        return ""
-    reads = "values at openings" if track.property.kept else "the past"
-    return f"Only the first violation is looked for: the property reads {reads}."
+    """Why no violation after the first is known; empty if all are, if there is none, and for properties of ids."""
+    is_first = track.verdict is Verdict.VIOLATED and all_violations(track) is None and track.slices is None
+    return "Only the first violation is known: the monitor for later ones exceeds its budget." if is_first else ""
 
 
 def violations_text(session: Session, track: Track) -> str:
