@@ -21,9 +21,9 @@ LEVEL = "own_msgs/msg/Level"
 OWN = {
     LEVEL: "uint8 LOW=1\nuint8 FULL=3\nstd_msgs/Header header\nuint8 state\nfloat32 level\nown_msgs/Part[] parts\n",
     "own_msgs/msg/Part": "string name\nfloat64 share\n",
-    "nav2_msgs/action/NavigateToPose_Feedback": "int16 number_of_recoveries\nfloat32 distance_remaining\n",
-    "nav2_msgs/action/NavigateToPose_FeedbackMessage": "unique_identifier_msgs/UUID goal_id\n"
-    "nav2_msgs/action/NavigateToPose_Feedback feedback\n",
+    "nav2_msgs/msg/NavigateToPose_Feedback": "int16 number_of_recoveries\nfloat32 distance_remaining\n",
+    "nav2_msgs/msg/NavigateToPose_FeedbackMessage": "unique_identifier_msgs/UUID goal_id\n"
+    "nav2_msgs/NavigateToPose_Feedback feedback\n",
 }
 """Messages of packages that no distribution has here."""
 
@@ -110,7 +110,7 @@ def _filled(kind: Any, content: Any, value: Any) -> Any:
     if kind == Nodetype.BASE:
         return value
     of, _ = content
-    each = [_filled(*of, one) for one in value]
+    each = [_filled(of[0], of[1], one) for one in value]
     return np.array(each, of[1][0]) if of[0] == Nodetype.BASE and of[1][0] != "string" else each
 
 
