@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import random
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -21,8 +21,11 @@ LEVEL = "own_msgs/msg/Level"
 OWN = {
     LEVEL: "uint8 LOW=1\nuint8 FULL=3\nstd_msgs/Header header\nuint8 state\nfloat32 level\nown_msgs/Part[] parts\n",
     "own_msgs/msg/Part": "string name\nfloat64 share\n",
+    "nav2_msgs/msg/NavigateToPose_Feedback": "int16 number_of_recoveries\nfloat32 distance_remaining\n",
+    "nav2_msgs/msg/NavigateToPose_FeedbackMessage": "unique_identifier_msgs/UUID goal_id\n"
+    "nav2_msgs/NavigateToPose_Feedback feedback\n",
 }
-"""Messages of a package that no distribution has."""
+"""Messages of packages that no distribution has here."""
 
 
 def _with_own(store: Stores) -> Any:
@@ -90,6 +93,25 @@ def made(name: str, **values: Any) -> Any:
             place = getattr(place, step)
         setattr(place, last, value)
     return message
+
+
+def filled(name: str, values: Mapping[str, Any]) -> Any:
+    """A message of the type, with zeros, but for the `values`: of a message by its fields, of an array all of them."""
+    message = made(name)
+    for field, (kind, content) in STORE.get_msgdef(name).fields:
+        if field in values:
+            setattr(message, field, _filled(kind, content, values[field]))
+    return message
+
+
+def _filled(kind: Any, content: Any, value: Any) -> Any:
+    if kind == Nodetype.NAME:
+        return filled(content, value)
+    if kind == Nodetype.BASE:
+        return value
+    of, _ = content
+    each = [_filled(of[0], of[1], one) for one in value]
+    return np.array(each, of[1][0]) if of[0] == Nodetype.BASE and of[1][0] != "string" else each
 
 
 class _Zeros(random.Random):

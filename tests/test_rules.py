@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from bag_support import Sent, filled, mcap
 from ulog_support import PRIMITIVES, LogWriter
 
 from ltlc import rules
@@ -28,22 +29,31 @@ def example(name: str) -> dict[str, Any]:
     return found
 
 
-def log(path: Path, formats: Path, rows: Rows) -> Path:
-    """A flight log with these messages; fields without a value are zero, numbers that are null NaN."""
-    writer = LogWriter()
-    by_topic = dict(line.split(":") for line in formats.read_text().splitlines())
-    for topic, text in by_topic.items():
-        writer.format(topic, text)
-    topics = list(by_topic)
-    for number, topic in enumerate(topics):
-        writer.subscribe(topic, number)
+def recording(folder: Path, pack: str, rows: Rows) -> Path:
+    """A flight log, or a bag, with these messages; fields without a value are zero, numbers that are null NaN."""
+    lines = (FIXTURES / pack / "formats").read_text().splitlines()
+    formats = {topic: text for topic, _, text in (line.partition(":" if pack == "px4" else " ") for line in lines)}
     found = [
         (round(begin * 1e6 + k * step * 1e6), topic, values)
         for begin, end, step, topic, values in rows
         for k in range(round((end - begin) / step) + 1)
     ]
-    for time, topic, values in sorted(found, key=lambda each: each[0]):
-        packed = b"".join(_packed(part, {"timestamp": time, **values}) for part in by_topic[topic].split(";") if part)
+    found.sort(key=lambda each: each[0])
+    if pack == "px4":
+        return _log(folder / "run.ulg", formats, found)
+    sent = [Sent(topic, formats[topic], time * 1000, filled(formats[topic], values)) for time, topic, values in found]
+    return mcap(folder / "run.mcap", sent)
+
+
+def _log(path: Path, formats: dict[str, str], found: Sequence[tuple[int, str, dict[str, Any]]]) -> Path:
+    writer = LogWriter()
+    for topic, text in formats.items():
+        writer.format(topic, text)
+    topics = list(formats)
+    for number, topic in enumerate(topics):
+        writer.subscribe(topic, number)
+    for time, topic, values in found:
+        packed = b"".join(_packed(part, {"timestamp": time, **values}) for part in formats[topic].split(";") if part)
         writer.message(topics.index(topic), packed)
     return writer.save(path)
 
@@ -60,10 +70,10 @@ def _packed(part: str, values: dict[str, Any]) -> bytes:
 def test_a_rule_passes_what_it_should_and_finds_what_it_should(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], name: str
 ) -> None:
-    formats, of = FIXTURES / name.partition("/")[0] / "formats", example(name)
-    passing = log(tmp_path / "passes.ulg", formats, of["passes"])
+    pack, of = name.partition("/")[0], example(name)
+    passing = recording(tmp_path, pack, of["passes"])
     assert main(["run", f"@{name}", str(passing)]) == 0, capsys.readouterr()
-    violating = log(tmp_path / "violates.ulg", formats, of["violates"])
+    violating = recording(tmp_path, pack, of["violates"])
     capsys.readouterr()
     assert main(["run", f"@{name}", str(violating), "--format", "json"]) == 1
     document = json.loads(capsys.readouterr().out)
@@ -95,9 +105,8 @@ def test_what_several_rules_define_is_the_same_and_every_rule_has_its_place_in_t
 def test_a_rule_about_what_is_not_in_the_log_is_reported_as_not_checked(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    formats = FIXTURES / "px4" / "formats"
     rows: Rows = [(0, 3, 0.5, "vehicle_status", {"arming_state": 2}), (0, 3, 0.5, "cpuload", {"load": 0.2})]
-    flight = log(tmp_path / "flight.ulg", formats, rows)
+    flight = recording(tmp_path, "px4", rows)
     assert main(["run", "@px4", str(flight)]) == 0
     printed = capsys.readouterr()
     assert "px4_cpu: presumably satisfied" in printed.out
@@ -108,8 +117,7 @@ def test_a_rule_about_what_is_not_in_the_log_is_reported_as_not_checked(
 
 
 def test_the_rules_of_a_pack_are_written_to_be_changed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    formats, of = FIXTURES / "px4" / "formats", example("px4/battery_cell")
-    flight = log(tmp_path / "flight.ulg", formats, of["violates"])
+    flight = recording(tmp_path, "px4", example("px4/battery_cell")["violates"])
     props = tmp_path / "props.ltlc"
     assert main(["new", "--pack", "px4", str(flight), "-o", str(props)]) == 0
     text = props.read_text()
@@ -123,7 +131,7 @@ def test_the_rules_of_a_pack_are_written_to_be_changed(tmp_path: Path, capsys: p
 
 def test_an_unknown_pack_or_rule_is_answered_with_those_that_there_are(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["check", "@px5"]) == 2
-    assert "the packs are `px4`" in capsys.readouterr().err
+    assert "the packs are `diagnostics`, `nav2`, " in capsys.readouterr().err
     assert main(["check", "@px4/gps_acuracy"]) == 2
     assert "did you mean `gps_accuracy`?" in capsys.readouterr().err
 

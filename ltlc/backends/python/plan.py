@@ -153,8 +153,8 @@ def _property(plan: _Plan, compiled: Compiled) -> Group:
         arguments.append(tuple_of(map(literal, owed), "obligations=("))
     if Verdict.VIOLATED in compiled.monitor.verdicts:
         arguments += _reasons(plan, compiled)
-    if written := list(_written(specification)):
-        arguments.append(Group("written={", tuple(written), "}"))
+    if names := list(_written(specification)):
+        arguments.append(Group("written={", tuple(names), "}"))
     if specification.requirement:
         arguments.append(_requirement(specification.requirement))
     match specification.slicing:
