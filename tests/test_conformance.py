@@ -21,6 +21,7 @@ from benchmarks.conformance.readings import BY_PARTS, READINGS
 from benchmarks.conformance.score import Outside, scored
 from benchmarks.differential import targets
 from benchmarks.differential.samples import Recording, Row
+from ltlc.assurance import c_library
 from ltlc.assurance.evidence.claims import refusal
 from ltlc.assurance.evidence.document import Summed
 from ltlc.semantics.certificate_reader import parse
@@ -66,6 +67,13 @@ def test_a_clock_of_one_id_decides_between_messages_by_columns_too() -> None:
     cases = load(numbers=[2922, 3090, 4588])
     found = scored("ltlc by columns", cases, ways.answers("ltlc by columns", cases))
     assert (found.wrong, len(found.in_time)) == ({}, len(cases))
+
+
+@pytest.mark.skipif(c_library.compiler() is None, reason="there is no C compiler here")
+def test_c_has_no_warnings_where_a_whole_number_is_compared_with_itself_at_an_opening() -> None:
+    cases = load(numbers=[1487])
+    found = scored("ltlc in C", cases, ways.answers("ltlc in C", cases))
+    assert (found.wrong, len(found.in_time)) == ({}, 1)
 
 
 def test_the_judge_accepts_what_is_proved_and_no_other_verdict_or_time() -> None:

@@ -11,6 +11,7 @@ from ltlc.backends.trees import Code, Prefix, Text
 from ltlc.backends.wording import Wording
 from ltlc.program.expressions import Kept, Read, parts, replaced
 from ltlc.program.machine import Machine
+from ltlc.program.normal import normal
 
 NEXT = "_next"
 """Ends the names of members whose values another has after a clock step at which a scope opens."""
@@ -56,7 +57,7 @@ class ClockSteps:
             asked = self._machine.atoms[atom]
             yield Do(f"{own}{name} = ", speller.code(asked))
             if name in self.anew:
-                yield Do(f"{own}{name}{NEXT} = ", speller.code(replaced(asked, latest)))
+                yield Do(f"{own}{name}{NEXT} = ", speller.code(normal(replaced(asked, latest))))
         for kept, name in self.taken.items():
             yield f"{own}{name} = {speller.names[latest[kept]]}"
 

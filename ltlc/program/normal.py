@@ -25,6 +25,7 @@ from ltlc.program.expressions import (
 )
 from ltlc.program.functions import Primitive
 from ltlc.program.machine import Base, Outcome
+from ltlc.program.types import BOOL
 from ltlc.semantics.diagrams import Diagram, Diagrams
 from ltlc.semantics.monitor import Decision, Target
 
@@ -63,6 +64,8 @@ def normal(expression: Expression) -> Expression:
 
 def _normal(primitive: Primitive, arguments: tuple[Expression, ...]) -> Expression:
     match primitive, arguments:
+        case Primitive.EQUAL, (left, right) if left == right and left.type.scalar.is_integer:
+            return Literal(True, BOOL)  # of which C compilers warn
         case Primitive.EQUAL, (left, right) if left == right:
             return _normal(Primitive.MEASURED, (left,))
         case ((Primitive.EQUAL | Primitive.SAME), (left, right)) if _order(left) > _order(right):
