@@ -342,8 +342,8 @@ class Slices(ToldSlices):
             self._forget(one)
             return
         if one.decided_at is not None and not self._is_before(one):
-            self._drop(one)
             self.ids.decide(one, one.decided_at)
+            self._drop(one)
         elif self._goes_by_time and (until := one.until) < one.scheduled:
             one.scheduled = until
             heappush(self._due, (until, one.id))
@@ -373,6 +373,7 @@ class Slices(ToldSlices):
 
     def _drop(self, one: Slice) -> None:
         self.ids.slices.pop(one.id, None)
+        self.ids.lacking.discard(one.id)
         for gone in self._gone.values():
             gone.discard(one.id)
         if self.track.scopes:
