@@ -414,7 +414,7 @@ def state(session: Session) -> list[Any]:
 def _kept(track: Track) -> dict[str, Any]:
     """What a monitor has; once it has decided, rows go on counting, and columns do not."""
     hidden = ("_",) if track.decided_at is None else ("_", "due_")
-    return {name: value for name, value in vars(track.monitor).items() if not name.startswith(hidden)}
+    return {name: getattr(track.monitor, name) for name in track.monitor.__slots__ if not name.startswith(hidden)}
 
 
 def _episodes(one: Episodes) -> Any:

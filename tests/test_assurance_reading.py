@@ -393,6 +393,20 @@ CHANGED = {
     ),
     "what all are given": (STOP, ".step(d, v)", ".step(v, d)", "does not receive the inputs of its monitors"),
     "a class": (STOP, "class Line3:", "class Line3(dict):", "contains more than its methods"),
+    "a slot that is missing": (
+        STOP,
+        '("invalid", "state", ',
+        '("invalid", ',
+        "the slots of `Line3` are not the attributes",
+    ),
+    "a slot too many": (
+        STOP,
+        '("invalid", ',
+        '("__dict__", "invalid", ',
+        "the slots of `Line3` are not the attributes",
+    ),
+    "a slot that is no text": (STOP, '("invalid", ', '("invalid", 1, ', "the slots of `Line3` are not the attributes"),
+    "no slots": (STOP, '    __slots__ = ("invalid", "state", "verdict")\n', "", "the slots of `Line3` are not"),
     "a decorator": (
         STOP,
         "    def step(self, d: float, v: float) -> Verdict:",

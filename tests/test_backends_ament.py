@@ -61,7 +61,7 @@ def test_what_the_properties_say_is_one_short_file(package: Path) -> None:
     text = path.read_text(encoding="utf-8")
     assert "class Sign" in text
     assert "class Session" not in text
-    assert len(text.splitlines()) < 400
+    assert len(text.splitlines()) < 420
     ruff = shutil.which("ruff", path=Path(sys.executable).parent) or pytest.skip("needs ruff")
     for command in (["format", "--diff"], ["check"]):
         run = subprocess.run([ruff, *command, "--isolated", path], capture_output=True, text=True, check=False)

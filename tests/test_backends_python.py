@@ -363,6 +363,8 @@ class StopAtSign:
     robot.velocity =={0.01} 0
     """
 
+    __slots__ = ("invalid", "state", "verdict")
+
     def __init__(self) -> None:
         self.state = 0
         self.verdict = NOT_STARTED

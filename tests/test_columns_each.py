@@ -105,7 +105,7 @@ def test_an_id_keeps_its_number_and_each_has_another(parts: list[list[object]]) 
     assert set(numbers.ids()) == known.keys()
 
 
-@pytest.mark.parametrize("most", [3, 1 << 17, 1 << 25])
+@pytest.mark.parametrize("most", [3, 1 << 17, 1 << 23, 1 << 25])
 def test_messages_of_one_id_stand_together_in_their_order(most: int) -> None:
     chance = np.random.default_rng(most)
     numbers = chance.integers(0, most, 500)

@@ -197,6 +197,12 @@ def test_a_rate_that_is_compared_otherwise_is_answered_with_both_limits() -> Non
     from_text(DECLARED + upper)
 
 
+def test_a_rate_without_its_unit_is_answered_with_how_rates_are_compared() -> None:
+    _, diagnostics = load_text(Source("props.txt", f"{DECLARED}always rate(x) >= 3 over 1 s"))
+    [diagnostic] = [each for each in diagnostics if each.code == "LTL107"]
+    assert "as in `rate(v) >= 10 Hz over 1 s`" in str(diagnostic.help)
+
+
 def test_rate_is_a_name_where_no_frequency_is_asked_for() -> None:
     from_text("decl rate /t std_msgs/Float64.data\nnever rate > 3 and rate(rate) >= 4 Hz over 500 ms\n")
 

@@ -168,8 +168,16 @@ def test_ids_beyond_the_limit_are_left_out_and_those_that_come_later_are_marked(
     freed = "p: each g of id limit 1: always (kind == 1 implies eventually kind == 2)"
     rows = [track_row(0, 1, 1), track_row(1, 2), track_row(2, 1, 2), track_row(3, 2, 1)]
     slices = slices_of(whole(freed, rows))
-    assert (slices.left_out, slices.ids.slices[2].lacks_beginning) == (1, True)
+    assert (slices.left_out, slices.ids.lacking) == (1, {2})
     assert slices.remarks()[0] == "still open: 2 since +0 s (its beginning may be missing)"
+
+
+def test_nothing_is_kept_of_ids_that_are_forgotten_or_decided() -> None:
+    text = "p: each g of id limit 1: (always (kind == 1 implies eventually kind == 2)) and never kind == 3"
+    rows = [track_row(0, 1, 1), track_row(1, 2), track_row(2, 1, 2)]
+    rows += [track_row(2 * n, n, 1) for n in range(2, 9)] + [track_row(2 * n + 1, n, 2) for n in range(2, 9)]
+    slices = slices_of(whole(text, [*sorted(rows), track_row(20, 9, 3)]))
+    assert (slices.left_out, list(slices.ids.violated), slices.ids.slices, slices.ids.lacking) == (1, [9], {}, set())
 
 
 def test_what_is_as_new_is_dropped_and_what_is_decided_stays_so() -> None:

@@ -52,7 +52,7 @@ FAULTS = {
     "the elements of another array": (TEXTS["elements"], '"kind": "kind[g]"', '"id": "kind[g]"'),
     "what is gone": (TEXTS["gone"], 'gone="gone id"', "gone=None"),
     "two ids in one place": (RESPONSE, "limit=1000", "limit=1"),
-    "ages of what others said before": (TEXTS["ages"], "self._last_heard.items()", "{}.items()"),
+    "ages of what others said before": (TEXTS["ages"], "self._last_heard.get(signal, self._begins)", "self._begins"),
     "an id that is one for all": (TEXTS["the id as a value"], "found[self._id] = id_", "pass"),
     "samples of another slice": (TEXTS["history"], "self.sampler.known.copy()", "self.sampler.known"),
     "a topic of all that only new slices hear": (

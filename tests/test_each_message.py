@@ -140,7 +140,7 @@ def test_each_message_begins_the_property_on_the_rest_of_the_run(text: str) -> N
         assert sorted(time for v in found.violated.values() for time in [v.failure.time] * (1 + v.more)) == decided
         assert found.well == sum(t.verdict is Verdict.SATISFIED for t in expected)
         undecided = sum(not t.verdict.is_permanent for t in expected)
-        assert sum(1 + one.more for one in found.slices.values()) == undecided
+        assert sum(1 + found.more[id_] for id_ in found.slices) == undecided
 
 
 CROWDED = (
@@ -186,7 +186,10 @@ def test_each_of_many_open_messages_is_judged_as_the_only_one(text: str) -> None
         assert found.well == sum(t.verdict is Verdict.SATISFIED for t in expected)
         owed = sorted(t.open_since.time for t in expected if t.open_since)
         assert (
-            sorted(o.open_since.time for o in found.slices.values() if o.open_since for _ in range(1 + o.more)) == owed
+            sorted(
+                o.open_since.time for o in found.slices.values() if o.open_since for _ in range(1 + found.more[o.id])
+            )
+            == owed
         )
         assert all(0 < one.steps <= track.steps for one in found.slices.values())
 
@@ -259,8 +262,7 @@ def test_messages_beyond_the_limit_of_open_ones_are_left_out(tmp_path: Path) -> 
 def test_what_goes_on_alike_is_kept_once() -> None:
     plan = plan_of(f"{GOALS}p: each new goal: never accepted > 2")
     track = instances(plan, [(0, "/accepted", {"accepted": 0.0}), *((t, "/goal", {"goal": t}) for t in range(1, 9))], 9)
-    (kept,) = messages_of(track).slices.values()
-    assert (kept.id, kept.more) == (1, 7)
+    assert (list(messages_of(track).slices), messages_of(track).more) == ([1], {1: 7})
     rows: list[Row] = [(0, "/accepted", {"accepted": 0.0}), (1, "/goal", {"goal": 1}), (2, "/goal", {"goal": 1})]
     track = instances(plan, [*rows, (3, "/accepted", {"accepted": 3.0})], 9)
     assert messages_of(track).failed == 2

@@ -142,7 +142,7 @@ def require_as_by_rows(text: str, library: Loaded) -> None:
             assert (left_out, instances.show(1)[3]) == (ids.left_out, ids.unopened)
             assert (VERDICTS[verdict], violated) == (track.verdict, ids.failed)
             owed = [one for one in ids.slices.values() if one.verdict is Verdict.PRESUMABLY_VIOLATED]
-            assert owing == sum(1 + one.more for one in owed)
+            assert owing == sum(1 + ids.more[one.id] for one in owed)
 
 
 EACH_NEW = "each new prog limit 3: never kind == 1"

@@ -46,7 +46,10 @@ FAULTS = {
     "no message opens": ('topic="/fb"', 'topic="/nothing"'),
     "an instance with the clocks of the run": ("self.before.fork()", "self.before"),
     "one instance for all": ("state_of(one.monitor)", "()"),
-    "an instance that another stands for, uncounted": ("one.more += 1 + other.more", "one.more += other.more"),
+    "an instance that another stands for, uncounted": (
+        "+= 1 + self.more.pop(other.id, 0)",
+        "+= self.more.pop(other.id, 0)",
+    ),
 }
 
 

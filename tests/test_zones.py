@@ -175,6 +175,12 @@ def test_what_cannot_be_said_of_zones_is_answered(text: str, code: str, message:
     assert (code, message) in found
 
 
+def test_a_zone_that_is_not_defined_is_answered_with_how_to_define_it() -> None:
+    (found,) = findings(HEAD + "never inside(p, kitchen) or inside(x, x, k)\n")
+    assert found.code == "LTL101"
+    assert "`zone kitchen = [(x, y), …]`" in str(found.help)
+
+
 def test_a_zone_may_stand_behind_the_properties_that_use_it_and_be_called_as_its_keyword() -> None:
     text = "decl x /x Float64.data\nnever inside(x, x, zone)\nzone zone = [(0, 0),\n  (4, 0), (4, 3)]\n"
     assert len(compiled(text).properties) == 1

@@ -230,7 +230,8 @@ class Emitted:
     def next(self, node: Any, signals: Letter | None) -> Hashable:
         attributes, held = node
         made = object.__new__(self._make)
-        vars(made).update({name: self._now + at if name.startswith("due") else at for name, at in attributes})
+        for name, at in attributes:
+            setattr(made, name, self._now + at if name.startswith("due") else at)
         if signals is not None:
             return self._stepped(made, signals)
         while self._now + 1 > made.due:
@@ -251,7 +252,8 @@ class Emitted:
                 return value
             return NEVER - self._now if value - now > FAR else max(-FAR, value - now)
 
-        return tuple((name, kept(name, value)) for name, value in vars(made).items()), held
+        attributes = ((name, getattr(made, name)) for name in made.__slots__ if hasattr(made, name))
+        return tuple((name, kept(name, value)) for name, value in attributes), held
 
 
 def differ(one: Machine, other: Machine, letters: Iterable[Letter]) -> bool:

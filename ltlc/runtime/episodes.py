@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable, Container, Iterable, Sequence
 from copy import copy
+from typing import Any
 
 from ltlc.runtime.properties import Age, Monitor, Opening, PastEvent, Scope
 from ltlc.runtime.sampling import Value
@@ -124,15 +125,21 @@ NOBODY = Watchers((), 0)
 def forked(monitor: Monitor) -> Monitor:
     """A monitor that goes on from here by itself, and counts by itself."""
     other: Monitor = object.__new__(monitor.__class__)
-    for name, value in vars(monitor).items():
+    for name, value in _attributes(monitor):
         setattr(other, name, value.copy() if value.__class__ is deque else value)
     return other
 
 
 def state_of(monitor: Monitor) -> tuple[object, ...]:
     """What decides how a monitor goes on."""
-    values = vars(monitor).values()
+    values = (value for _, value in _attributes(monitor))
     return tuple(tuple(v) if v.__class__ is deque else v for v in values)
+
+
+def _attributes(monitor: Monitor) -> list[tuple[str, Any]]:
+    """What a monitor has, by name: values at openings only once there are any."""
+    names = monitor.__slots__
+    return [(name, getattr(monitor, name)) for name in names if hasattr(monitor, name)]
 
 
 def count_anew(

@@ -30,6 +30,7 @@ class Monitor(Protocol):
     at which a clock's answer changes, and `expire` takes that step.
     """
 
+    __slots__: tuple[str, ...]
     state: int
     verdict: Verdict
     invalid: int

@@ -14,32 +14,16 @@ from ltlc.runtime.slice_keys import Id, id_of
 from ltlc.runtime.times import NEVER
 from ltlc.semantics.verdicts import Verdict
 
-NOTHING_HEARD: frozenset[str] = frozenset()
-
 
 class Slice(Course):
     """The run of one id, as far as it is known.
 
     known: its samples, and those that all slices share
     counted: the verdict as which it was counted
-    is_kept: whether it is one of those that are
     scheduled: up to when time does not change it, as it was noted
-    lacks_beginning: whether messages before its first one may have found no place
-    more: how many others go on like it, and are not kept
-    latest, heard: what the next tick sees of it, where there are ticks
     """
 
-    __slots__ = (
-        "counted",
-        "heard",
-        "id",
-        "is_kept",
-        "known",
-        "lacks_beginning",
-        "latest",
-        "more",
-        "scheduled",
-    )
+    __slots__ = ("counted", "id", "known", "scheduled")
 
     def __init__(
         self,
@@ -53,12 +37,7 @@ class Slice(Course):
         self.id = id_
         self.known = known
         self.counted = Verdict.NOT_STARTED
-        self.is_kept = False
-        self.more = 0
         self.scheduled = NEVER
-        self.lacks_beginning = False
-        self.latest: dict[str, Value] | None = None
-        self.heard = NOTHING_HEARD
 
     def fork(self) -> Slice:
         """What goes on from here by itself, of a property no scope of which opened."""
@@ -86,6 +65,7 @@ class Ids:
     slices: those that are not decided
     violated, satisfied: the ids of the others
     forgotten: all others that came, if there is no limit; `births` counts slices
+    lacking: those of them of which messages before the first may have found no place
     calm: the verdict if no obligation is open and nothing is violated
     messages: how many messages had an id; of others, `without_id` counts those that had
     none, `left_out` those of which the id found no place
@@ -97,6 +77,7 @@ class Ids:
         self.violated: dict[Id, Violation] = {}
         self.satisfied: set[Id] = set()
         self.forgotten: set[Id] = set()
+        self.lacking: set[Id] = set()
         self.births = self.messages = self.without_id = self.left_out = 0
         self.calm = Verdict.NOT_STARTED
         self._owed = self._failed = 0
@@ -136,7 +117,6 @@ class Ids:
     def keep(self, one: Slice) -> None:
         """A slice is kept from now on."""
         self.births += 1
-        one.is_kept = True
         self.slices[one.id] = one
         self.forgotten.discard(one.id)
 
@@ -161,7 +141,7 @@ class Ids:
     def decide(self, one: Slice, failure: Failure) -> None:
         """A slice was decided, and dropped; its id is kept."""
         if one.verdict is Verdict.VIOLATED:
-            self.violated[one.id] = Violation(failure, one.lacks_beginning)
+            self.violated[one.id] = Violation(failure, one.id in self.lacking)
         else:
             self.satisfied.add(one.id)
 
@@ -185,12 +165,14 @@ class Ids:
 class Messages(Ids):
     """Messages by their numbers: each opens an instance, at most `limit` are open.
 
-    An instance is a slice that has all that comes after its message. `unopened` counts
-    the messages from which on nothing was judged, because something had no value.
+    An instance is a slice that has all that comes after its message, for itself and for
+    `more` that go on like it and are not kept. `unopened` counts the messages from
+    which on nothing was judged, because something had no value.
     """
 
     def __init__(self, limit: int | None) -> None:
         super().__init__(limit)
+        self.more: Counter[Id] = Counter()
         self.unopened = self._well = 0
 
     def number(self) -> int:
@@ -220,11 +202,12 @@ class Messages(Ids):
     def merge(self, one: Slice, other: Slice) -> None:
         """What becomes of `one` becomes of `other`, which is dropped."""
         self._owed -= other.counted is Verdict.PRESUMABLY_VIOLATED
-        one.more += 1 + other.more
+        self.more[one.id] += 1 + self.more.pop(other.id, 0)
 
     def decide(self, one: Slice, failure: Failure) -> None:
         """An instance was decided, and dropped."""
+        more = self.more.pop(one.id, 0)
         if one.verdict is Verdict.VIOLATED:
-            self.violated[one.id] = Violation(failure, False, one.more)
+            self.violated[one.id] = Violation(failure, False, more)
         else:
-            self._well += 1 + one.more
+            self._well += 1 + more

@@ -24,14 +24,14 @@ Id = bool | int | float | str
 
 def id_of(value: Value) -> Id | None:
     """A value as an id; NaN is not an id, and a whole number is an integer."""
+    if value.__class__ is float:
+        if value.is_integer():
+            return int(value)
+        return None if math.isnan(value) else value
     if value.__class__ is tuple:
         return bytes_text(bytes(map(int, value)))
-    if value.__class__ is not float:
-        found: Id = value
-        return found
-    if value.is_integer():
-        return int(value)
-    return None if math.isnan(value) else float(value)
+    found: Id = value
+    return found
 
 
 def bytes_text(value: bytes) -> str:
@@ -72,6 +72,17 @@ class Part:
     news: tuple[int, ...]
     aged: frozenset[str]
     is_step: bool
+
+    def take(self, known: list[Value], time: int, row: Sequence[Value]) -> None:
+        """Take what a row has of this, and that its messages are new."""
+        for place in self.news:
+            known[place] = True
+        update = self.update
+        # As `update.take` does: calling it would be much of what a message costs.
+        for place, target in update.plain:
+            known[target] = row[place]
+        if update.deep or update.derived:
+            update.take_more(known, time, row)
 
     def of(self, row: Sequence[Value]) -> dict[str, Value]:
         """The samples of this part of a row."""
@@ -161,6 +172,7 @@ class Cut:
             self.keys, self._opening, *(self.sampler.topics[n] for n in self.ages)
         ).difference(marked)
         self.own_ages = frozenset(name for name in self.ages if self.is_own(name))
+        self.shared_ages = self.ages - self.own_ages
         self._topic = {s.name: s.topic for s in signals if isinstance(s, Reading)}
         samples, known = self.sampler.samples, self.sampler.known
         own = [s for name, s in samples.items() if self.is_own(name)]

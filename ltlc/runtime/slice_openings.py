@@ -33,7 +33,6 @@ class Openings:
         self.opener = opener
         self.messages = messages
         self.before = before
-        before.is_kept = True  # beside the instances
         is_timed = before.property.timed
         self._quick = attrgetter("state", "due") if is_timed else attrgetter("state")
         self._uncounted: Counter[str] = Counter()

@@ -118,7 +118,7 @@ class ToldSlices:
             deadline = one.deadline()
             left = None if deadline is None or now is None else deadline - 1 - now
             opened = latest(one.scopes)
-            found.append(Owed(one.id, opened, since, left, one.lacks_beginning))
+            found.append(Owed(one.id, opened, since, left, one.id in self.ids.lacking))
         return nsmallest(
             MOST, found, key=lambda each: NEVER if each.left is None else each.left
         )

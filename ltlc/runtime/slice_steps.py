@@ -45,6 +45,7 @@ class Slices(ToldSlices):
         self.openings = openings
         self.soon = NEVER
         self._look = cut.window.values
+        self._place = cut.window.place
         self._has_ages = bool(cut.ages)
         self._begins = 0
         self._is_recounted = False
@@ -181,9 +182,12 @@ class Slices(ToldSlices):
         if self.ids.is_decided(id_) or not self.ids.find_place():
             return None
         one = self._born(time, id_)
-        one.counted, one.lacks_beginning = self.ids.calm, self.ids.left_out > 0
+        one.counted = self.ids.calm
         if id_ in self.ids.forgotten:  # and all was well
             one.verdict = Verdict.PRESUMABLY_SATISFIED
+        if self.ids.left_out:
+            self.ids.lacking.add(id_)
+        self.ids.keep(one)
         return one
 
     def _fresh(self) -> Monitor:
@@ -199,16 +203,15 @@ class Slices(ToldSlices):
         ids, whole, probe = self.ids, self.track, self._probe
         if probe is None or whole.verdicts is not None or not part.is_step:
             return False
-        if (
-            ids.calm is Verdict.NOT_STARTED
-            or ids.is_decided(id_)
-            or not ids.has_place()
-        ):
+        if ids.calm is Verdict.NOT_STARTED:
+            return False
+        is_met = id_ in ids.forgotten
+        if not is_met and (ids.is_decided(id_) or not ids.has_place()):
             return False
         known = self.cut.known(id_)
-        mark(known, part.news, is_new=True)
-        part.update.take(known, time, given)
-        values = self._look(known)
+        part.take(known, time, given)
+        place = self._place
+        values = (known[place],) if place >= 0 else self._look(known)
         if None in values:
             return False
         if whole.property.timed:
@@ -221,7 +224,7 @@ class Slices(ToldSlices):
             self._probe = self._fresh()
             return False
         whole.steps += 1
-        if ids.limit is None:
+        if not is_met and ids.limit is None:
             ids.forgotten.add(id_)
         return True
 
@@ -229,11 +232,9 @@ class Slices(ToldSlices):
         """A slice begins: ages of what is its own count from now."""
         of = self.track
         known, because = self.cut.known(id_), of.invalid_because
-        one = Slice(id_, of.property, because, known, self._begins)
-        for signal, heard in self._last_heard.items():
-            one.hear(heard, {signal})
-        if self.cut.own_ages:
-            one.hear(time, self.cut.own_ages)
+        one = Slice(id_, of.property, because, known, time)
+        for signal in self.cut.shared_ages:
+            one.hear(self._last_heard.get(signal, self._begins), {signal})
         return one
 
     # Slices that were judged elsewhere.
@@ -245,8 +246,7 @@ class Slices(ToldSlices):
         [topic] = self.cut.keys
         part = self.cut.own_part(self.cut.row(names, frozenset({topic})), (topic,))
         one = self._born(time, id_)
-        mark(one.known, part.news, is_new=True)
-        part.update.take(one.known, time, values)
+        part.take(one.known, time, values)
         one.judged_on = self._look(one.known)
         mark(one.known, part.news, is_new=False)
         return one
@@ -263,9 +263,7 @@ class Slices(ToldSlices):
         known = one.known
         if part.aged:
             one.hear(time, part.aged)
-        if part.news:
-            mark(known, part.news, is_new=True)
-        part.update.take(known, time, given)
+        part.take(known, time, given)
         if part.is_step or self._begins_now(one):
             self._step(time, one)
         if part.news:
@@ -280,7 +278,8 @@ class Slices(ToldSlices):
 
     def _step(self, time: int, one: Slice) -> None:
         """A slice takes a step, if all has a value."""
-        values, whole = self._look(one.known), self.track
+        place, known, whole = self._place, one.known, self.track
+        values = (known[place],) if place >= 0 else self._look(known)
         before = one.steps
         if not before and None in values and not one.property.is_ready(values):
             return
@@ -332,7 +331,7 @@ class Slices(ToldSlices):
     # Verdicts.
 
     def _settle(self, one: Slice) -> None:
-        """Keep and count a slice, unless it is decided, or as new."""
+        """Count a slice, and drop it if it is decided, or as new."""
         verdict = one.verdict
         if verdict is Verdict.NOT_STARTED and self._withdraws(one):
             self._drop(one)
@@ -342,11 +341,9 @@ class Slices(ToldSlices):
         if one.monitor.state in self.as_new and self.is_as_new(one):
             self._forget(one)
             return
-        if not one.is_kept:
-            self.ids.keep(one)
         if one.decided_at is not None and not self._is_before(one):
-            self._drop(one)
             self.ids.decide(one, one.decided_at)
+            self._drop(one)
         elif self._goes_by_time and (until := one.until) < one.scheduled:
             one.scheduled = until
             heappush(self._due, (until, one.id))
@@ -376,6 +373,7 @@ class Slices(ToldSlices):
 
     def _drop(self, one: Slice) -> None:
         self.ids.slices.pop(one.id, None)
+        self.ids.lacking.discard(one.id)
         for gone in self._gone.values():
             gone.discard(one.id)
         if self.track.scopes:

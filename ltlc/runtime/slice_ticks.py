@@ -7,12 +7,14 @@ from collections.abc import Sequence
 from ltlc.runtime.properties import Change
 from ltlc.runtime.sampling import Value, mark
 from ltlc.runtime.session import Session
-from ltlc.runtime.slice_ids import NOTHING_HEARD, Ids, Slice
-from ltlc.runtime.slice_keys import Cut, Part, Row
+from ltlc.runtime.slice_ids import Ids, Slice
+from ltlc.runtime.slice_keys import Cut, Id, Part, Row
 from ltlc.runtime.slice_openings import Openings
 from ltlc.runtime.slice_steps import Slices
 from ltlc.runtime.ticks import Ticks
 from ltlc.runtime.tracking import Track
+
+NOTHING: frozenset[str] = frozenset()
 
 
 class TickedSlices(Slices):
@@ -36,6 +38,8 @@ class TickedSlices(Slices):
         self._ticks: Ticks | None = None
         self._latest: dict[str, Value] = {}
         self._news: frozenset[str] = frozenset()
+        self._own_latest: dict[Id, dict[str, Value]] = {}
+        self._own_news: dict[Id, frozenset[str]] = {}
         self._quiet = 0
 
     def begin(self, time: int) -> None:
@@ -66,8 +70,8 @@ class TickedSlices(Slices):
         if part.aged:
             one.hear(time, part.aged)
         own = {n: value for n, value in part.of(given).items() if self.cut.is_own(n)}
-        one.latest = {**(one.latest or {}), **own}
-        one.heard |= part.topics
+        self._own_latest.setdefault(one.id, {}).update(own)
+        self._own_news[one.id] = self._own_news.get(one.id, NOTHING) | part.topics
         self._quiet = 0
         if one.is_renewed and self._ticks.next() != time:
             one.renew(time)
@@ -76,6 +80,11 @@ class TickedSlices(Slices):
     def _changed(self, time: int, part: Part, given: list[Slice]) -> list[Slice]:
         """All: each keeps what it gets for the next tick."""
         return given
+
+    def _drop(self, one: Slice) -> None:
+        super()._drop(one)
+        self._own_latest.pop(one.id, None)
+        self._own_news.pop(one.id, None)
 
     def _open(self, time: int, row: Row, values: Sequence[Value]) -> Slice | None:
         """A message opens nothing: the next tick does, if it has heard of any."""
@@ -115,16 +124,15 @@ class TickedSlices(Slices):
         cut.sampler.hear(())
         self._open_by_news()
         for one in self._going_on():
-            known, latest = one.known, one.latest or {}
+            known, latest = one.known, self._own_latest.get(one.id, {})
             if cut.keys:
                 cut.share(known)
-            news = cut.sampler.news(self._news | one.heard)
+            news = cut.sampler.news(self._news | self._own_news.pop(one.id, NOTHING))
             mark(known, news, is_new=True)
             part = cut.tick_part((*latest, *names), is_own=True)
             part.update.take(known, time, (*latest.values(), *given))
             self._step(time, one)
             mark(known, news, is_new=False)
-            one.heard = NOTHING_HEARD
             if one.is_renewed:
                 one.renew(time)
             self._settle(one)
@@ -138,7 +146,7 @@ class TickedSlices(Slices):
             return
         opened = self.openings.open()
         if opened is not None:
-            opened.heard = frozenset({self.openings.opener.mark})
+            self._own_news[opened.id] = frozenset({self.openings.opener.mark})
 
     def _skip(self, ticks: Ticks, until: int) -> None:
         """Count ticks before `until` without taking them, if they all do the same."""

@@ -44,6 +44,7 @@ class Written:
         try:
             of = replace(self.file.step_class(self.name), ages=self.ages)
             found = machine_in(of, self.machine, self.given, PYTHON, loose=self.ages is None)
+            self.file.require_slots(self.name)
         except NotUnderstoodError as error:
             return Difference(str(error))
         wrong = difference(found, self.machine)

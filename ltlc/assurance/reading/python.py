@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import math
 from collections.abc import Sequence
+from typing import TypeGuard
 
 from ltlc.assurance.reading.names import FileNames
 from ltlc.assurance.reading.trees import (
@@ -60,12 +61,22 @@ class PythonFile:
             raise NotUnderstoodError(f"the class `{name}` contains more than its methods")
         functions: dict[str, ast.FunctionDef] = {}
         for part in without_docstring(definition.body):
+            if _slots(part) is not None:
+                continue
             if not isinstance(part, ast.FunctionDef) or part.name in functions:
                 raise not_understood(part)
             functions[part.name] = part
         if not functions.keys() >= {"__init__", "step"}:
             raise NotUnderstoodError(f"the class `{name}` has no step")
         return self._of_functions(name, functions)
+
+    def require_slots(self, name: str) -> None:
+        """Raise NotUnderstoodError unless the class called `name` has slots for what it sets, and for nothing else."""
+        definition = self.names.only(name)
+        assert isinstance(definition, ast.ClassDef)
+        said = [slots for part in definition.body if (slots := _slots(part)) is not None]
+        if said != [sorted({repr(each.attr) for each in ast.walk(definition) if _is_set(each)})]:
+            raise NotUnderstoodError(f"the slots of `{name}` are not the attributes that it sets")
 
     def _of_functions(self, name: str, functions: dict[str, ast.FunctionDef]) -> StepClass:
         start = functions.pop("__init__")
@@ -294,6 +305,15 @@ class _Scope:
                 return [items]
 
 
+def _slots(part: ast.stmt) -> list[str] | None:
+    """The names of slots, in quotes, if a part of a class is those."""
+    match part:
+        case ast.Assign([ast.Name("__slots__")], ast.Tuple(names)):
+            return sorted(map(ast.unparse, names))
+        case _:
+            return None
+
+
 def _index(node: ast.expr | None) -> int | None:
     match node:
         case None:
@@ -308,6 +328,10 @@ def _index(node: ast.expr | None) -> int | None:
 
 def _is_verdict(tree: Tree) -> bool:
     return isinstance(tree, Constant) and not isinstance(tree.value, bool | int | float | str)
+
+
+def _is_set(node: ast.AST) -> TypeGuard[ast.Attribute]:
+    return isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Store)
 
 
 def _is_read(name: ast.Name) -> bool:

@@ -97,11 +97,13 @@ def _module(module: str) -> Module:
 
 
 def module_text(module: str) -> str:
-    """The source of a module, which is not imported: there may be no ROS here."""
+    """The source of a module, which is not imported: there may be no ROS here. Dataclasses are those of Python."""
     spec = importlib.util.find_spec(module)
     if spec is None or spec.origin is None:
         raise ModuleNotFoundError(module)
-    return Path(spec.origin).read_text(encoding="utf-8")
+    return (
+        Path(spec.origin).read_text(encoding="utf-8").replace("from ltlc.dataclass import", "from dataclasses import")
+    )
 
 
 def _imports(node: ast.stmt) -> list[Import]:
@@ -109,8 +111,7 @@ def _imports(node: ast.stmt) -> list[Import]:
         case ast.Import(names):
             return [Import(alias.name) for alias in names]
         case ast.ImportFrom(str(module), names):
-            standard = "dataclasses" if module == "ltlc.dataclass" else module  # which does the same
-            return [Import(standard, ast.unparse(alias)) for alias in names]
+            return [Import(module, ast.unparse(alias)) for alias in names]
         case _:
             return []
 

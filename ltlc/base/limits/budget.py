@@ -50,7 +50,7 @@ class Exceeded:
     def __str__(self) -> str:
         match self.limit:
             case Limit.TIME:
-                return f"takes longer than {self.budget.seconds:g} s"
+                return f"takes longer than {round(self.budget.seconds, 2) or self.budget.seconds:g} s"
             case Limit.MEMORY:
                 return f"needs more than {self.budget.megabytes} MB of memory"
             case Limit.NESTING:

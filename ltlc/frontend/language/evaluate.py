@@ -17,12 +17,14 @@ from ltlc.frontend.language.references import (
     constant_beside,
     ground_truth,
     is_short_constant,
+    is_unknown,
     kind,
     member,
     message_constant,
     messages,
     no_field,
     referent,
+    unknown,
 )
 from ltlc.frontend.language.values import (
     AgeOf,
@@ -174,6 +176,10 @@ def _report_property(checker: Checker, node: syntax.Node) -> None:
 
 def of_zone(checker: Checker, node: syntax.Call, function: Function) -> Call | None:
     """A function of a point, or its x and y, and of a zone, whose corners are the last arguments."""
+    last = node.arguments[-1] if len(node.arguments) > 1 else None
+    if isinstance(last, syntax.Reference) and is_unknown(checker, last):
+        unknown(checker, last, defined=f"`zone {last.name.text} = [(x, y), …]` defines a zone by its corners")
+        return None
     found = [value(checker, argument) for argument in node.arguments]
     match found:
         case [Vector((x, y, _)), Zone(name, corners)] | [Scalar(x), Scalar(y), Zone(name, corners)]:
@@ -235,6 +241,8 @@ _OF_EACH = "inside `any(…)`, `all(…)` and `count(…)` this applies to each 
 _CHANGES = ("derivative", "deriv", "diff", "gradient", "slope", "der", "d")
 """What others call the change of a signal."""
 
+_RATE = "compare a rate with one in Hz, by `>=` or `<`, as in `rate(v) >= 10 Hz over 1 s`"
+
 
 def _call(checker: Checker, node: syntax.Call) -> Value | None:
     name = node.function.text
@@ -246,7 +254,8 @@ def _call(checker: Checker, node: syntax.Call) -> Value | None:
             checker.report("LTL107", node.function.span, f"there is no function `{name}`", help=Help(change, (fix,)))
             return None
         place, listed = node.function.span, "the functions are " + ", ".join(f"`{f}`" for f in FUNCTIONS)
-        help = respell(place, name, FUNCTIONS, is_closed=True) or respell(place, name, KEYWORDS) or listed
+        help = _RATE if name == "rate" else respell(place, name, FUNCTIONS, is_closed=True)
+        help = help or respell(place, name, KEYWORDS) or listed
         checker.report("LTL107", place, f"there is no function `{name}`", help=help)
         return None
     if name == "age":

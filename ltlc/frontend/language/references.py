@@ -131,8 +131,11 @@ def is_unknown(checker: Checker, node: syntax.Node) -> bool:
     return name not in checker.lost | names.everywhere.keys() | names.objects.keys() | names.models.keys()
 
 
-def unknown(checker: Checker, node: syntax.Reference, other: Value | None = None) -> None:
-    """Report that `node` is not defined; what it is compared with may show what was meant."""
+def unknown(checker: Checker, node: syntax.Reference, other: Value | None = None, defined: str = "") -> None:
+    """Report that `node` is not defined; what it is compared with may show what was meant.
+
+    What it would be `defined` by is by default a declaration.
+    """
     name = node.name.text
     if name.lower() in _NO_NAMES:
         message = f"nothing called `{name}` is defined"
@@ -155,7 +158,7 @@ def unknown(checker: Checker, node: syntax.Reference, other: Value | None = None
     help = (other and _as_value(checker, node, other)) or help or _abbreviation(checker, node.name)
     if after in TEMPORAL or after == "forall":
         help = help or Help(f"a label ends with a colon: `{name}: …`", (put(node.name.span.end, ":"),))
-    help = help or f"`decl {name} TOPIC TYPE.FIELD` declares a signal of that name"
+    help = help or defined or f"`decl {name} TOPIC TYPE.FIELD` declares a signal of that name"
     checker.report("LTL101", node.name.span, f"nothing called `{name}` is defined", help=help)
 
 

@@ -132,13 +132,13 @@ class Runs:
 def runs_of(numbers: Places, messages: Places | None) -> Runs:
     """Those of `messages`, ascending, None for all, in which the ids have these `numbers`."""
     given = numbers if messages is None else numbers.take(messages)
-    bits = len(given).bit_length()
-    keys: Array = given << bits
-    keys |= np.arange(len(given))
-    if bits + int(given.max(initial=0)).bit_length() < 32:
-        keys = keys.astype(np.int32)  # which is sorted in half the time
+    bits = max(0, len(given) - 1).bit_length()
+    is_short = bits + int(given.max(initial=0)).bit_length() <= 32
+    keys: Array = given.astype(np.uint32 if is_short else np.int64)  # the short ones are sorted in half the time
+    keys <<= bits
+    keys |= np.arange(len(given), dtype=keys.dtype)
     keys.sort()
-    of, order = keys >> bits, (keys & (1 << bits) - 1).astype(np.int64, copy=False)
+    of, order = keys >> bits, np.bitwise_and(keys, (1 << bits) - 1, dtype=np.int64)
     is_first = np.ones(len(of), np.bool_)
     np.not_equal(of[1:], of[:-1], out=is_first[1:])
     firsts = np.flatnonzero(is_first)

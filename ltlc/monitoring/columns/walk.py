@@ -123,7 +123,7 @@ class Changes:
 def _view(track: Course, time: int) -> list[Any]:
     """What decides what a step does with a letter: states, and which clocks are late at `time`."""
     return [
-        (one.state, one.verdict, [due < time for name, due in vars(one).items() if name.startswith("due")])
+        (one.state, one.verdict, [getattr(one, name) < time for name in one.__slots__ if name.startswith("due")])
         for one in _machines(track)
     ]
 
