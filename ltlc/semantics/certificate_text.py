@@ -143,7 +143,7 @@ class _Writer:
         yield f"formula {self._formula(certificate.formula)}"
         yield f"assumption {self._formula(certificate.assumption)}"
         for clocks, number in self.clocks.items():
-            yield f"k{number} {_clocks_in_words(clocks)}"
+            yield f"k{number} {clocks_in_words(clocks)}"
         for state, (verdict, edge) in enumerate(zip(monitor.verdicts, monitor.edges, strict=True)):
             remains = self._places(certificate.annotations[state])
             yield f"q{state} {verdict.value} {_target(edge)}{f' remains {remains}' if remains else ''}"
@@ -231,7 +231,7 @@ class _Writer:
         return ["{" + ",".join(f"a{number}" for number in letter) + "}" for letter in known]
 
 
-def _clocks_in_words(clocks: Clocks) -> str:
+def clocks_in_words(clocks: Clocks) -> str:
     """Whether a letter has been read, then the phase of each tracker, with how many bounds have passed if it runs."""
     words = ["unread" if clocks.is_first else "read"]
     for number, (phase, passed) in enumerate(clocks.states):
