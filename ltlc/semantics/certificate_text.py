@@ -9,7 +9,7 @@ the lines; `proofs/checker` reads the same.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import field
 
 from ltlc.dataclass import dataclass
@@ -57,12 +57,12 @@ class Entry:
     remarks: tuple[str, ...] = field(default=(), compare=False)
 
 
-def to_text(entries: Iterable[Entry]) -> str:
-    """The certificates as a text. Raises ValueError if a name does not fit on a line."""
+def to_text(entries: Iterable[Entry], guards: Sequence[Sequence[str]] = ()) -> str:
+    """The certificates as a text, then the lines of guards. Raises ValueError if a name does not fit on a line."""
     entries = tuple(entries)
-    lines = [HEADER, f"properties {len(entries)}"]
-    for entry in entries:
-        lines += ["", *_Writer(entry).lines()]
+    lines = [HEADER, f"properties {len(entries)}" + (f" guards {len(guards)}" if guards else "")]
+    for some in (*(_Writer(entry).lines() for entry in entries), *guards):
+        lines += ["", *some]
     return "\n".join(lines) + "\n"
 
 

@@ -43,6 +43,11 @@ def guard_lines(entry: GuardEntry) -> list[str]:
     return _Writer(entry).lines()
 
 
+def heading(entry: GuardEntry) -> list[str]:
+    """The lines that say what its game is played on, the region apart."""
+    return _Writer(entry).heading()
+
+
 class _Writer:
     """Numbers predicates and states of clocks as they are first used."""
 
@@ -58,13 +63,17 @@ class _Writer:
         self.places = {j: n for n, j in enumerate(j for j in places if self.arena.outcome(j) is None)}
 
     def lines(self) -> list[str]:
+        assumption = f"assumption {self._predicate(self.arena.alphabet.as_formula())}"
+        places = [self._place(joint, number) for joint, number in self.places.items()]
+        acts = list(self._acts())
+        clocks = [f"k{number} {clocks_in_words(clocks)}" for clocks, number in self.clocks.items()]
+        return [*self.heading(), *self.predicate_lines, assumption, *clocks, *places, *acts, "end"]
+
+    def heading(self) -> list[str]:
         news = {name: topic for part in self.arena.parts for name, topic in part.news.items()}
         for name in (*self.topics, *self.atoms, *news):
             if not is_name(name):
                 raise ValueError(f"not a name that fits on a line: {name!r}")
-        assumption = f"assumption {self._predicate(self.arena.alphabet.as_formula())}"
-        places = [self._place(joint, number) for joint, number in self.places.items()]
-        acts = list(self._acts())
         return [
             *(f"guard {line} {raw} to {out}" for line, raw, out in self.entry.guards),
             f"lead {self.entry.lead}",
@@ -73,12 +82,6 @@ class _Writer:
             *(f"n{number} m{self.topics.index(topic)} {name}" for number, (name, topic) in enumerate(news.items())),
             *self._fallbacks(),
             *(f"u{number} {self._part(part, number)}" for number, part in enumerate(self.arena.parts)),
-            *self.predicate_lines,
-            assumption,
-            *(f"k{number} {clocks_in_words(clocks)}" for clocks, number in self.clocks.items()),
-            *places,
-            *acts,
-            "end",
         ]
 
     def _reading(self, name: str) -> str:
@@ -103,7 +106,9 @@ class _Writer:
             for name, atom in self.atoms.items():
                 value = fallback.effect[name]
                 if value is not None and fallback.out in self.arena.read[name]:
-                    words.append(f"a{atom} {str(value).lower() if isinstance(value, bool) else f'a{self.atoms[value]}'}")
+                    words.append(
+                        f"a{atom} {str(value).lower() if isinstance(value, bool) else f'a{self.atoms[value]}'}"
+                    )
             yield " ".join(words)
 
     def _part(self, part: Part, number: int) -> str:
@@ -122,11 +127,8 @@ class _Writer:
         return " ".join(words)
 
     def _standing(self, at: Standing) -> str:
-        match at:
-            case Outcome.WAITING:
-                return "waits"
-            case Outcome():
-                return "satisfied"
+        if isinstance(at, Outcome):
+            return "waits" if at is Outcome.WAITING else "satisfied"
         clocks = at.reset
         return f"k{self.clocks.setdefault(clocks, len(self.clocks))}.q{at.state}" if clocks.states else f"q{at.state}"
 
