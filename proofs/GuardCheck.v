@@ -1,7 +1,8 @@
 (** The checker of a guard's region: whatever message comes, whatever clocks pass, and whatever it then sends, it comes to
     rest again ([check_guard_sound]). Conditions on letters are decision diagrams, and no letter is listed.
 
-    A step is taken symbolically: after it, each condition is a diagram over what held before and what comes anew. *)
+    A step is taken symbolically: after it, each condition is a diagram over what held before and what comes anew.
+    Python: [ltlc/semantics/region_check.py]. *)
 From Coq Require Import List Arith Lia Bool.
 Import ListNotations.
 Require Import Ltl Properties Past Encodings Clocks Trackers Resets Monitor Conditions Judgements Moves Machines Certificate

@@ -1,6 +1,8 @@
 (** Where a guard is, with several properties: for each the state of its monitor and that of its reset machine, and how a
     message, a fallback or a nanosecond leads on. What leaves a guard that rests in a closed region violates no property
-    that is kept ([guarded_verdict], [guarded_not_violated]), as long as none is violated that it relies on. *)
+    that is kept ([guarded_verdict], [guarded_not_violated]), as long as none is violated that it relies on.
+
+    Python: [ltlc/semantics/arenas.py]. *)
 From Coq Require Import List Arith Lia Bool.
 Import ListNotations.
 Require Import Ltl Properties Trackers Resets Monitor Conditions Judgements Moves Certificate Infinite Diagrams Guard.

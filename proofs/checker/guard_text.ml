@@ -1,4 +1,4 @@
-(* Reads guards with their regions; docs/assurance.md has the lines. *)
+(* Reads guards with their regions: the same lines as ltlc/semantics/region_reader.py; docs/assurance.md has them. *)
 open Kernel
 open Words
 
