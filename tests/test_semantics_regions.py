@@ -14,8 +14,8 @@ from test_semantics_certificate_text import mangled
 from ltlc.analysis.guards.solution import solve
 from ltlc.semantics.arenas import Arena
 from ltlc.semantics.certificate_reader import UnreadableError, parse
-from ltlc.semantics.diagrams import formulas, of_predicate
-from ltlc.semantics.ltl import FALSE, Atom
+from ltlc.semantics.diagrams import Diagram, formulas, of_predicate
+from ltlc.semantics.ltl import FALSE, Atom, Formula
 from ltlc.semantics.region_check import objection
 from ltlc.semantics.region_reader import RegionRead, guards_of, read_region
 
@@ -51,8 +51,8 @@ def test_a_region_that_is_written_can_be_read(seed: int) -> None:
     region, found = solve(arena).region(), read(arena, text)
     levels = {name: level for level, name in enumerate(arena.read)}
 
-    def of(predicate: object) -> object:
-        return of_predicate(predicate, found.diagrams, levels)  # type: ignore[arg-type]
+    def of(predicate: Formula) -> Diagram:
+        return of_predicate(predicate, found.diagrams, levels)
 
     places = [joint for joint in found.spots if found.spots[joint].rests != found.diagrams.false]
     assert {joint: found.spots[joint].rests for joint in places} == {

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import field
-from itertools import pairwise
 from typing import NamedTuple
 
 from ltlc.dataclass import dataclass
@@ -173,7 +172,7 @@ class _Reader:
         return clock
 
 
-def _ascending(found: Sequence[object]) -> None:
+def _ascending(found: Sequence[int] | Sequence[tuple[int, int]]) -> None:
     """Raises WrongError where things are not named in their order, each once."""
-    if any(not one < other for one, other in pairwise(found)):  # type: ignore[operator]
+    if list(found) != sorted(set(found)):
         raise WrongError("what is listed is not in its order")
