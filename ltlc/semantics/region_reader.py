@@ -129,7 +129,7 @@ class _Reader:
             raise WrongError("there is a second line for this place")
         rest = words[4 + count :]
         fallbacks = [refer(word, "g", len(self.arena.fallbacks)) for word in rest[::2]]
-        _ascending(fallbacks)
+        _ascending([(fallback,) for fallback in fallbacks])
         answers = dict(zip(fallbacks, map(self._predicate, rest[1::2]), strict=True))
         self.places.append(joint)
         self.found.spots[joint] = Spot(self._predicate(words[3 + count]), answers, {})
@@ -172,7 +172,7 @@ class _Reader:
         return clock
 
 
-def _ascending(found: Sequence[int] | Sequence[tuple[int, int]]) -> None:
+def _ascending(found: Sequence[tuple[int, ...]]) -> None:
     """Raises WrongError where things are not named in their order, each once."""
     if list(found) != sorted(set(found)):
         raise WrongError("what is listed is not in its order")
