@@ -2,7 +2,8 @@
     kept property is violated, and whatever comes, it can come to rest again ([never_at_a_loss], [in_time]); it is not
     drawn into sending for ever ([few_are_sent], [time_goes_on]); and it changes only what has to be changed ([necessary]).
 
-    A state is all that decides what can come: where each property is, and what is held. *)
+    A state is all that decides what can come: where each property is, and what is held. Python:
+    [ltlc/analysis/guards]. *)
 From Coq Require Import Arith Lia.
 
 Section Game.

@@ -1,7 +1,8 @@
 (** The checker of a guard's region: whatever message comes, whatever clocks pass, and whatever it then sends, it comes to
     rest again ([check_guard_sound]). Conditions on letters are decision diagrams, and no letter is listed.
 
-    A step is taken symbolically: after it, each condition is a diagram over what held before and what comes anew. *)
+    A step is taken symbolically: after it, each condition is a diagram over what held before and what comes anew.
+    Python: [ltlc/semantics/region_check.py]. *)
 From Coq Require Import List Arith Lia Bool.
 Import ListNotations.
 Require Import Ltl Properties Past Encodings Clocks Trackers Resets Monitor Conditions Judgements Moves Machines Certificate
@@ -375,7 +376,8 @@ Section Check.
       forall c, at_values (after false s before c) (reading (values (snd x)) (snd y) j) = values (snd y) c.
   Proof.
     intros p e s x y d a judge HL HP HJ j. pose proof HL as (_ & HA & _).
-    destruct (ways_show (reading (values (snd x)) (snd y) j) false e s (given_that p) before judge x y d a HL) as (HN & ctx & HX & HJ');
+    destruct (ways_show (reading (values (snd x)) (snd y) j) false e s (given_that p) before judge x y d a HL)
+      as (HN & ctx & HX & HJ');
       auto.
     - now apply given_that_at.
     - intros c. apply before_at.
@@ -460,7 +462,8 @@ Section Check.
       destruct (one_step _ _ _ x y d e _ HD H3 HA (snd y)) as (ctx & HX & HJ & HN). cbv beta in HJ.
       apply rest_at_true. exact (into_shows _ _ _ _ _ HJ HX HN).
     - intros x y (s & H1 & H2) (t & d & e & Ht & HD). destruct (HS _ _ H1) as (HP & _ & _ & HA & _).
-      specialize (HA t Ht). unfold message_is_answered in HA. rewrite HP in HA. destruct (one_step _ _ _ x y d e _ HD H2 HA (snd y)) as (ctx & HX & HJ & HN). cbv beta in HJ.
+      specialize (HA t Ht). unfold message_is_answered in HA. rewrite HP in HA.
+      destruct (one_step _ _ _ x y d e _ HD H2 HA (snd y)) as (ctx & HX & HJ & HN). cbv beta in HJ.
       apply answered_at_true. exact (into_shows _ _ _ _ _ HJ HX HN).
     - intros x y d (s & H1 & H2) (e & HD). destruct (HS _ _ H1) as (HP & _ & _ & _ & HA & _).
       unfold time_is_answered in HA. rewrite HP in HA.

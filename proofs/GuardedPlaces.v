@@ -1,6 +1,8 @@
 (** Where a guard is, with several properties: for each the state of its monitor and that of its reset machine, and how a
     message, a fallback or a nanosecond leads on. What leaves a guard that rests in a closed region violates no property
-    that is kept ([guarded_verdict], [guarded_not_violated]), as long as none is violated that it relies on. *)
+    that is kept ([guarded_verdict], [guarded_not_violated]), as long as none is violated that it relies on.
+
+    Python: [ltlc/semantics/arenas.py]. *)
 From Coq Require Import List Arith Lia Bool.
 Import ListNotations.
 Require Import Ltl Properties Trackers Resets Monitor Conditions Judgements Moves Certificate Infinite Diagrams Guard.
@@ -155,9 +157,9 @@ Section Setting.
       parts_step i c (1 + n) Ps ws ws' ds es ->
       parts_step i c n (P :: Ps) (w :: ws) (w' :: ws') (d ++ ds) (e ++ es).
 
-  (** The numbers of messages that matter are those of the latest beginning. *)
+  (** The numbers of messages that matter: up to that of the latest beginning, and at least 1. *)
   Definition most_counted (o : nat) : nat :=
-    fold_right (fun P m => match waits P with ForSent hs => max (nth o hs 0) m | _ => m end) 0 (parts S).
+    fold_right (fun P m => match waits P with ForSent hs => max (nth o hs 0) m | _ => m end) 1 (parts S).
   Definition none_left : list nat := map (fun _ => 0) (seq 0 (owned S)).
   Definition one_left (t : nat) (m : list nat) : list nat :=
     map (fun o => min (nth o m 0 + if o =? t then 1 else 0) (most_counted o)) (seq 0 (owned S)).

@@ -13,13 +13,19 @@ from itertools import product
 
 import ltlc
 from ltlc.analysis.guards.game import Game
+from ltlc.assurance.evidence.certified import entry_of
+from ltlc.assurance.exactness import checked_certificate
 from ltlc.automata import Budget
 from ltlc.base.source import Source
 from ltlc.compiler import compile_specification
 from ltlc.frontend.language import load_text
+from ltlc.interfaces.building.guards import guard_entries
 from ltlc.semantics import finite
 from ltlc.semantics.arenas import Arena, Joint, Outcome, Place, Standing, standing
+from ltlc.semantics.certificate import Certificate
+from ltlc.semantics.certificate_text import to_text
 from ltlc.semantics.encodings import EPISODE
+from ltlc.semantics.region_text import guard_lines
 from ltlc.semantics.timed_run import TimedRun
 from ltlc.semantics.words import Letter
 from ltlc.specification import evaluation
@@ -40,6 +46,18 @@ def loaded(text: str) -> tuple[Specification, list[Arena]]:
     properties = [Property(each.specification, each.formula, each.monitor) for each in compiled]
     games = together(specification.guards, specification.properties)
     return specification, [arena_of(guards, properties) for guards in games]
+
+
+def certified(text: str) -> tuple[list[Arena], str]:
+    """The arenas of the guards in `text`, and the file of certificates with their regions."""
+    specification, problems = load_text(Source("guard", text))
+    assert specification is not None, [(each.code, each.message) for each in problems]
+    compiled, _ = compile_specification(specification, EPISODE, Budget())
+    found = [(each, checked_certificate(each)) for each in compiled]
+    entries = [entry_of(each, certificate) for each, certificate in found if isinstance(certificate, Certificate)]
+    guards = guard_entries(specification, compiled)
+    assert len(entries) == len(compiled)
+    return [each.arena for each in guards], to_text(entries, [guard_lines(each) for each in guards])
 
 
 @dataclass

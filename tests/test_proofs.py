@@ -27,6 +27,8 @@ from evidencing import (
     specification,
     write_bag,
 )
+from guarding import certified
+from guarding import drawn as guard_drawn
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from judged_cases import TABLE as JUDGED_TABLE
@@ -45,6 +47,7 @@ from ltlc.assurance.evidence.reader import Read
 from ltlc.assurance.pairs import pairs_of
 from ltlc.cli import main
 from ltlc.semantics.alphabet import Alphabet
+from ltlc.semantics.arenas import Arena
 from ltlc.semantics.certificate import Certificate, Place, check, is_run, possible
 from ltlc.semantics.certificate_reader import UnreadableError, parse
 from ltlc.semantics.certificate_text import Entry, in_words, to_text
@@ -56,6 +59,8 @@ from ltlc.semantics.following import follows_monitor
 from ltlc.semantics.lasso import holds_on_lasso
 from ltlc.semantics.ltl import TRUE, And, Atom, Not
 from ltlc.semantics.properties import Property
+from ltlc.semantics.region_check import objection
+from ltlc.semantics.region_reader import guards_of, read_region
 from ltlc.semantics.reset_machine import ResetMachine
 from ltlc.semantics.verdicts import Verdict
 from ltlc.semantics.words import Lasso
@@ -275,6 +280,43 @@ def test_both_checkers_read_every_bound_as_it_is_written(certify: Path, tmp_path
     code, lines = coq_answer(certify, tmp_path / "one", text)
     assert (code, lines) == python_answer(text)
     assert (code, len(lines)) == (0, len(BOUNDS) + 1)
+
+
+@pytest.mark.parametrize("seed", range(share_of(60)))
+def test_both_checkers_say_the_same_of_the_region_of_a_guard_and_of_mangled_ones(
+    certify: Path, tmp_path: Path, seed: int
+) -> None:
+    chance = random.Random(seed)
+    (arena,), text = certified(guard_drawn(chance).text)
+    start = text.index("\nassumption ", text.index("\nguard ")) + 1
+    for changed in (text, *(text[:start] + altered_region(text[start:], chance) for _ in range(8))):
+        code, lines = coq_answer(certify, tmp_path / "one", changed)
+        assert python_said_of_guard(arena, changed) in (lines[:1] if code == 2 else lines)
+
+
+def python_said_of_guard(arena: Arena, text: str) -> str:
+    (lines,) = guards_of(text)
+    try:
+        why = objection(arena, read_region(lines, arena))
+    except UnreadableError as error:
+        return f"line {error.line}"
+    return f"guard /raw to /cmd: {'certified' if why is None else f'not certified: {why}'}"
+
+
+def altered_region(text: str, chance: random.Random) -> str:
+    """Its lines, of which one is lost, or has a word exchanged for one of its sort."""
+    lines = text.splitlines()
+    here = chance.randrange(len(lines) - 1)
+    first, *words = lines[here].split(" ")
+    if chance.random() < 0.2 or not words:
+        del lines[here]
+    else:
+        place = chance.randrange(len(words))
+        sort = re.sub(r"\d+", "0", words[place])
+        alike = [w for each in text.split("\n") for w in each.split(" ")[1:] if re.sub(r"\d+", "0", w) == sort]
+        words[place] = chance.choice([*alike, "true", "false"] if sort in ("d0", "true", "false") else alike)
+        lines[here] = " ".join([first, *words])
+    return "\n".join(lines) + "\n"
 
 
 GUARDED = """decl speed /cmd_vel Twist.linear.x

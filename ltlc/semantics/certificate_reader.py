@@ -78,19 +78,41 @@ _EVENTS: dict[Callable[..., Property], int] = {
 """How many of the parts of a kind of property are state predicates or events, and come first."""
 
 
+def clocks_of_words(words: list[str]) -> Clocks:
+    """A state of the clocks, as `clocks_in_words` has it. Raises WrongError."""
+    if words[:1] not in (["read"], ["unread"]):
+        raise WrongError("a state of the clocks says 'read' or 'unread' first")
+    states: list[State] = []
+    begun: set[int] = set()
+    rest = iter(words[1:])
+    for word in rest:
+        phase = Phase.RUNNING if word == BEGUN else _PHASES.get(word)
+        if phase is None:
+            raise WrongError(f"'{word[:40]}' is not what a clock can do: {', '.join((*_PHASES, BEGUN))}")
+        if word == BEGUN:
+            begun.add(len(states))
+        states.append(State(phase, natural(next(rest, "")) if word == Phase.RUNNING.value else 0))
+    return Clocks(words[0] == "unread", tuple(states), frozenset(begun))
+
+
 class _Reader:
     def __init__(self) -> None:
         self.number = 0
         self.entries: list[Entry] = []
         self.draft: Draft | None = None
         self.stage = ""
+        self.guards = 0
+        self.in_guard = False
 
     def fail(self, message: str) -> NoReturn:
         raise UnreadableError(self.number, message)
 
     def read(self, text: str) -> tuple[Entry, ...]:
-        """Every line in turn; the first two say what the text is and how many entries it has."""
-        expected: int | None = None
+        """Every line in turn; the first two say what the text is and how many entries it has.
+
+        Those of guards, which come last, are only counted here: `region_reader` reads them.
+        """
+        expected: tuple[int, int] | None = None
         started = False
         for self.number, line in enumerate(text.split("\n"), start=1):
             words = line.split(" ")
@@ -102,21 +124,24 @@ class _Reader:
             try:
                 if expected is None:
                     expected = self.expected(words)
+                elif self.in_guard or (self.draft is None and words[0] == "guard"):
+                    self.in_guard = line != "end"
+                    self.guards += line == "end"
                 else:
                     self.item(line, words)
             except WrongError as error:
                 self.fail(str(error))
-        if self.draft is not None or expected is None:
+        if self.draft is not None or self.in_guard or expected is None:
             self.fail("the text ends in the middle of a certificate")
-        if len(self.entries) != expected:
-            self.fail(f"there are {len(self.entries)} properties, not {expected}")
+        if (len(self.entries), self.guards) != expected:
+            self.fail(f"there are {len(self.entries)} properties and {self.guards} guards, not as many as it says")
         return tuple(self.entries)
 
-    def expected(self, words: list[str]) -> int:
-        """How many entries there are."""
-        if words[0] != "properties" or len(words) != 2:
-            self.fail("the second line says 'properties' and how many")
-        return natural(words[1])
+    def expected(self, words: list[str]) -> tuple[int, int]:
+        """How many properties and guards there are."""
+        if words[0] != "properties" or len(words) not in (2, 4) or words[2:3] not in ([], ["guards"]):
+            self.fail("the second line says 'properties' and how many, then 'guards' and how many, if there are any")
+        return natural(words[1]), natural(words[3]) if len(words) == 4 else 0
 
     def item(self, line: str, words: list[str]) -> None:
         """One line of an entry."""
@@ -126,6 +151,8 @@ class _Reader:
         if stage not in _STAGES or (len(kind) == 1 and part is None):
             self.fail(f"'{words[0][:40]}' starts no line of a certificate")
         if self.draft is None:
+            if self.guards:
+                self.fail("properties come before guards")
             if kind != "property":
                 self.fail("a property starts with 'property'")
             self.draft, self.stage = Draft(self.name(line, "property")), stage
@@ -227,19 +254,7 @@ class _Reader:
 
     def read_k(self, draft: Draft, _: str, words: list[str]) -> None:
         next_number(words[0], len(draft.clocks))
-        if words[1:2] not in (["read"], ["unread"]):
-            self.fail("a state of the clocks says 'read' or 'unread' first")
-        states: list[State] = []
-        begun: set[int] = set()
-        rest = iter(words[2:])
-        for word in rest:
-            phase = Phase.RUNNING if word == BEGUN else _PHASES.get(word)
-            if phase is None:
-                self.fail(f"'{word[:40]}' is not what a clock can do: {', '.join((*_PHASES, BEGUN))}")
-            if word == BEGUN:
-                begun.add(len(states))
-            states.append(State(phase, natural(next(rest, "")) if word == Phase.RUNNING.value else 0))
-        draft.clocks.append(Clocks(words[1] == "unread", tuple(states), frozenset(begun)))
+        draft.clocks.append(clocks_of_words(words[1:]))
 
     def spots(self, draft: Draft, words: list[str]) -> list[Spot]:
         """Places: formulas, each after a state of the clocks and a dot if there are clocks."""

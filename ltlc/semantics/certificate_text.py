@@ -9,7 +9,7 @@ the lines; `proofs/checker` reads the same.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import field
 
 from ltlc.dataclass import dataclass
@@ -57,12 +57,12 @@ class Entry:
     remarks: tuple[str, ...] = field(default=(), compare=False)
 
 
-def to_text(entries: Iterable[Entry]) -> str:
-    """The certificates as a text. Raises ValueError if a name does not fit on a line."""
+def to_text(entries: Iterable[Entry], guards: Sequence[Sequence[str]] = ()) -> str:
+    """The certificates as a text, then the lines of guards. Raises ValueError if a name does not fit on a line."""
     entries = tuple(entries)
-    lines = [HEADER, f"properties {len(entries)}"]
-    for entry in entries:
-        lines += ["", *_Writer(entry).lines()]
+    lines = [HEADER, f"properties {len(entries)}" + (f" guards {len(guards)}" if guards else "")]
+    for some in (*(_Writer(entry).lines() for entry in entries), *guards):
+        lines += ["", *some]
     return "\n".join(lines) + "\n"
 
 
@@ -143,7 +143,7 @@ class _Writer:
         yield f"formula {self._formula(certificate.formula)}"
         yield f"assumption {self._formula(certificate.assumption)}"
         for clocks, number in self.clocks.items():
-            yield f"k{number} {_clocks_in_words(clocks)}"
+            yield f"k{number} {clocks_in_words(clocks)}"
         for state, (verdict, edge) in enumerate(zip(monitor.verdicts, monitor.edges, strict=True)):
             remains = self._places(certificate.annotations[state])
             yield f"q{state} {verdict.value} {_target(edge)}{f' remains {remains}' if remains else ''}"
@@ -231,7 +231,7 @@ class _Writer:
         return ["{" + ",".join(f"a{number}" for number in letter) + "}" for letter in known]
 
 
-def _clocks_in_words(clocks: Clocks) -> str:
+def clocks_in_words(clocks: Clocks) -> str:
     """Whether a letter has been read, then the phase of each tracker, with how many bounds have passed if it runs."""
     words = ["unread" if clocks.is_first else "read"]
     for number, (phase, passed) in enumerate(clocks.states):

@@ -7,7 +7,7 @@ import re
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.verdicts import Verdict
 
-PART = re.compile(r"([atfpkqdcsbo])(0|[1-9][0-9]{0,8})")
+PART = re.compile(r"([atfpkqdcsbomngur])(0|[1-9][0-9]{0,8})")
 VERDICTS = {v.value: v for v in Verdict if v is not Verdict.NOT_STARTED}
 _NUMBER = re.compile(r"(0|[1-9][0-9]{0,8})")
 _DURATION = re.compile(r"(0|[1-9][0-9]{0,17})")

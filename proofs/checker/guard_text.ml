@@ -1,4 +1,4 @@
-(* Reads guards with their regions; docs/assurance.md has the lines. *)
+(* Reads guards with their regions: the same lines as ltlc/semantics/region_reader.py; docs/assurance.md has them. *)
 open Kernel
 open Words
 
@@ -31,6 +31,7 @@ type draft = {
   mutable assumption : int diagram option;
   clocks : clocks sequence;
   spots : spot sequence;
+  places : (place0, unit) Hashtbl.t;
   acts : (int, some_clocks * int * int diagram) Hashtbl.t;  (* by place, the latest first *)
 }
 
@@ -40,7 +41,7 @@ let most_places = 100_000
 let draft entries =
   { entries; guards = sequence (); leads = false; heard = sequence (); conditions = sequence (); news = sequence ();
     answers = sequence (); parts = sequence (); diagrams = sequence (); assumption = None; clocks = sequence ();
-    spots = sequence (); acts = Hashtbl.create 16 }
+    spots = sequence (); places = Hashtbl.create 16; acts = Hashtbl.create 16 }
 
 let owned d = d.guards.length
 let topic d s = refer 'm' d.heard.length s
@@ -171,6 +172,8 @@ let read_place d all_trackers word = function
         | [ _ ] -> fail "a fallback has a predicate" in
       each 0 rest;
       let spot_place = phase, ws in
+      if Hashtbl.mem d.places spot_place then fail "there is a second line for this place";
+      Hashtbl.replace d.places spot_place ();
       push d.spots { spot_place; resting; answering = Array.to_list answering; ahead = [] }
   | [] -> fail "a place says how many messages have left"
 

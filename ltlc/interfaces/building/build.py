@@ -15,17 +15,19 @@ from ltlc.base.source import Source
 from ltlc.compiler import Compiled
 from ltlc.dataclass import dataclass
 from ltlc.frontend.language import types_for
+from ltlc.interfaces.building.guards import NoRegionError, guard_entries
 from ltlc.interfaces.building.targets import Made, Target, UnfitError
 from ltlc.interfaces.building.wording import GATE_MEMORY, GATE_SECONDS, failures, summary
 from ltlc.semantics.certificate import Certificate
 from ltlc.semantics.certificate_reader import UnreadableError, parse
 from ltlc.semantics.certificate_text import to_text
+from ltlc.semantics.region_text import guard_lines
 from ltlc.specification.guards import Guard
 from ltlc.specification.specification import Specification
 
 
 class TooLargeError(Exception):
-    """The certificates are larger than `ltlc certify` reads."""
+    """The certificates are larger than `ltlc certify` reads, or say less than they would have to."""
 
 
 @dataclass(frozen=True)
@@ -53,7 +55,7 @@ class Built:
 
         Raises TooLargeError if others could not read them.
         """
-        text = to_text(
+        entries = (
             entry_of(
                 compiled,
                 judgement.certificate,
@@ -62,6 +64,10 @@ class Built:
             for compiled, judgement in zip(self.compiled, self.judgements, strict=True)
             if isinstance(judgement, Judgement) and isinstance(judgement.certificate, Certificate)
         )
+        try:
+            text = to_text(entries, [guard_lines(each) for each in guard_entries(self.specification, self.compiled)])
+        except NoRegionError as error:
+            raise TooLargeError(str(error)) from None
         try:
             parse(text)
         except UnreadableError as error:
@@ -81,10 +87,10 @@ def build(
 
     `budget` is what the translation of each property may use; judging it may use some times as much. Raises UnfitError.
     """
-    if specification.guards:
-        raise UnfitError([_without_guard(specification.source, guard) for guard in specification.guards])
     messages = Messages(types_for(specification.source, message_paths)[0])
     made = target.make(compiled, specification, messages)
+    if specification.guards and made.programs is not None:
+        raise UnfitError([_without_guard(specification.source, guard) for guard in specification.guards])
     gate = Budget(GATE_SECONDS * budget.seconds, GATE_MEMORY * budget.megabytes)
     judgements = judge_all(compiled, made.programs, messages, gate, watch, made.written)
     return Built(specification, compiled, target, made, judgements)

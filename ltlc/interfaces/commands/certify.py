@@ -17,6 +17,7 @@ from ltlc.assurance.afresh.files import Code, UnusableError, code_at, text_at
 from ltlc.assurance.certificates import Checked, Subject, Unreadable, check_certificates
 from ltlc.assurance.evidence.document import NotCovered, digest
 from ltlc.assurance.evidence.statement import State
+from ltlc.assurance.guards import check_guards
 from ltlc.automata import Budget, SpotMissing
 from ltlc.base.diagnostics import Diagnostic
 from ltlc.compiler import Compiled
@@ -125,6 +126,8 @@ def _certify(
         if each.assumption != TRUE:
             print(f"  assuming {in_words(each.assumption)}")
     is_right = all(each.passed for each in checked)
+    if options.certificate is not None:
+        is_right = _are_guarded(options, specification, checked, text) and is_right
     compiled = _compiled(specification, checked, encoding)
     if options.program:
         is_right = are_followed(checked, compiled, options.quiet) and is_right
@@ -141,6 +144,21 @@ def _certify(
         if found == OK and any(isinstance(each, NotCovered) for document in documents for each in document.properties):
             found = UNDECIDED
     return found if is_right else FINDING
+
+
+def _are_guarded(
+    options: argparse.Namespace, specification: Specification, checked: Sequence[Checked], text: str
+) -> bool:
+    """Say of each guard whether its region is closed. Raises UnusableError."""
+    found = check_guards(specification, checked, text, options.encoding)
+    if isinstance(found, Unreadable):
+        raise UnusableError(f"{options.certificate}:{found.line}: {found.message}")
+    for guard in found:
+        print(f"guard {guard.label}: {'certified' if guard.objection is None else f'not certified: {guard.objection}'}")
+        for verb, labels in (("keeping", guard.keeps), ("relying on", guard.assumes)):
+            if labels:
+                print(f"  {verb} {', '.join(labels)}")
+    return all(guard.objection is None for guard in found)
 
 
 def _certificates(options: argparse.Namespace, specification: Specification, encoding: Encoding) -> str:
