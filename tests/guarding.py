@@ -7,6 +7,7 @@ times, a fallback is a message as any other, and `ltlc.monitor` judges what has 
 from __future__ import annotations
 
 import random
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import product
@@ -201,7 +202,7 @@ class Followed:
         held = {name for name, value in self.letter().items() if value}
         at = list(self.joint.standings)
         for k, part in enumerate(arena.parts):
-            if at[k] is Outcome.WAITING and self._begins(k, before, sent, topic):
+            if at[k] is Outcome.WAITING and self._begins(k, topic):
                 self.runs[k] = TimedRun(part.time.trackers, part.time.news, self.heard[0][0])
                 for moment, of in self.heard[:-1]:
                     list(self.runs[k].hear(moment, [n for n, t in part.news.items() if t == of]))
@@ -214,10 +215,11 @@ class Followed:
                 at[k] = self._along(k, at[k], self.runs[k].step(time, own))
         self.joint = Joint(sent, tuple(at))
 
-    def _begins(self, k: int, before: object, sent: object, topic: str) -> bool:
-        part, spoken = self.game.arena.parts[k], {t for _, t in self.heard}
-        ways = self.game.arena.beginnings(part, before, sent, topic)  # type: ignore[arg-type]
-        return all(ways) if len(ways) == 1 else part.waits <= spoken
+    def _begins(self, k: int, topic: str) -> bool:
+        """Whether all has come that part k waits for, as `docs/language.md` says, just now or at its first message."""
+        part, came = self.game.arena.parts[k], Counter(of for _, of in self.heard)
+        awaited = {of: part.history if of in self.game.arena.outs else 0 for of in part.waits}
+        return all(came[of] > before for of, before in awaited.items()) and (not awaited or topic in part.topics)
 
     def hold(self, until: int) -> None:
         """The clock steps up to and including `until`."""

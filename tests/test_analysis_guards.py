@@ -202,12 +202,13 @@ def test_guards_that_share_a_property_are_one_game() -> None:
 
 
 def test_an_emergency_stop_that_was_released_before_the_first_command_is_not_forgotten() -> None:
-    """The property waits for no command, so it begins before the first one leaves."""
+    """The property waits for no command, so it begins before the first one leaves, while the guard is silent."""
     text = (
         "decl speed /cmd Float64.data\ndecl pressed /estop Bool.data\ndecl reset /reset Bool.data\n"
-        "guard /raw to /cmd\np: after_until pressed, reset, always (new speed implies speed <= 0)\n"
+        "decl near /near Bool.data\nguard /raw to /cmd\n"
+        "p: after_until pressed, reset, always (new speed implies speed <= 0)\nq: never (new speed and near)\n"
     )
-    guard = Drawn(text, {"/cmd": {"speed": [0.0, 1.0]}, "/estop": {"pressed": []}, "/reset": {"reset": []}}, {}, [])
+    guard = Drawn(text, {}, {}, [])
     specification, (arena,) = loaded(text)
     solution = solve(arena)
     rests = []
@@ -216,6 +217,19 @@ def test_an_emergency_stop_that_was_released_before_the_first_command_is_not_for
         followed.take((0, "/reset", (("reset", False),)))
         followed.take((1, "/estop", (("pressed", was_pressed),)))
         followed.take((2, "/estop", (("pressed", False),)))
-        followed.take((3, "/cmd", (("speed", 1.0),)))
+        followed.take((3, "/near", (("near", False),)))
+        assert followed.joint in solution.visited
+        followed.take((4, "/cmd", (("speed", 1.0),)))
         rests.append(followed.rests(solution.rests))
     assert rests == [True, False]
+
+
+def test_a_guard_does_not_break_an_assumption_by_itself() -> None:
+    text = (
+        "guard /raw to /cmd else stop\nmessage stop {}\ndecl speed /cmd Float64.data\n"
+        "assume always speed <= 5\np: always speed <= 9\n"
+    )
+    _, (arena,) = loaded(text)
+    solution = solve(arena)
+    d = solution.game.diagrams
+    assert d.conjunction(solution.let_through("/cmd"), d.negation(solution.game.atom("speed <= 5"))) == d.false
