@@ -25,7 +25,7 @@ class Watched(Protocol):
     is_silent: whether a topic that is waited for has not spoken, or lacks a value
     has_begun: whether all properties have begun
     is_blind: whether a value that is not a number keeps a property from taking steps
-    broken: the label of a kept property that is violated or of a broken assumption
+    violated: the label of a property that is violated, and whether it is an assumption
     rests: whether the guard may rest
     """
 
@@ -39,7 +39,7 @@ class Watched(Protocol):
     def has_begun(self) -> bool: ...  # noqa: D102
 
     @property
-    def broken(self) -> str | None: ...  # noqa: D102
+    def violated(self) -> tuple[str, bool] | None: ...  # noqa: D102
 
     @property
     def rests(self) -> bool: ...  # noqa: D102
@@ -101,6 +101,10 @@ class Deed:
     reason: str = ""
 
 
+_Plan = tuple[int, Message | None, str]
+"""When something is due, and why: a message, or a look at the clocks."""
+
+
 class Guard:
     """Decides for one set of guards that share properties, over `watched`.
 
@@ -121,22 +125,23 @@ class Guard:
         self.fallbacks = tuple(fallbacks)
         self.lead = lead
         self.lost: str | None = None
+        self._planned: tuple[_Plan | None] | None = None
 
     def hear(self, time: int, topic: str, values: Values) -> list[Deed]:
         """A message has come on a topic other than that of commands."""
-        self.watched.hear(time, topic, values)
+        self._take(time, topic, values)
         return self._respond(time, f"after a message on {topic}")
 
     def command(self, time: int, out: str, values: Values) -> Deed:
         """A command has come that asks to leave on the topic `out`."""
         why = self._refusal()
         if why is None and (why := self._objection(time, out, values)) is None:
-            self.watched.hear(time, out, values)
+            self._take(time, out, values)
             return Deed(time, Action.PASSED, (out,), values, None, values)
         message = self._instead(time, out)
         if message is None:
             return Deed(time, Action.HELD, (out,), values, reason=why or "")
-        self.watched.hear(time, out, message.values)
+        self._take(time, out, message.values)
         sent = message.values
         return Deed(time, Action.CHANGED, (out,), values, message.name, sent, why or "")
 
@@ -151,15 +156,28 @@ class Guard:
         while (plan := self._plan()) is not None and plan[0] <= time:
             moment, message, why = plan
             if message is None:
-                self.watched.hold(moment)
+                self._hold(moment)
                 deeds += self._respond(moment, "when time had passed")
             else:
                 deeds.append(self._send(moment, message, why))
-        self.watched.hold(time)
+        self._hold(time)
         return deeds
 
-    def _plan(self) -> tuple[int, Message | None, str] | None:
-        """What is due next, when, and why: a message, or a look at the clocks."""
+    def _take(self, time: int, topic: str, values: Values) -> None:
+        self._planned = None
+        self.watched.hear(time, topic, values)
+
+    def _hold(self, until: int) -> None:
+        self._planned = None
+        self.watched.hold(until)
+
+    def _plan(self) -> _Plan | None:
+        """What is due next; found once for what is known."""
+        if self._planned is None:
+            self._planned = (self._found(),)
+        return self._planned[0]
+
+    def _found(self) -> _Plan | None:
         due = self.watched.due()
         if due is None:
             return None
@@ -189,19 +207,23 @@ class Guard:
 
     def _respond(self, time: int, when: str) -> list[Deed]:
         """Answer what has come, if something has to be."""
-        broken = self.watched.broken
+        violated = self.watched.violated
         if self.lost is not None or (
-            broken is None and (self.watched.is_blind or self.watched.rests)
+            violated is None and (self.watched.is_blind or self.watched.rests)
         ):
             return []
         for message in () if self.watched.is_silent else self.fallbacks:
             if self._having_sent(self.watched, time, message) is not None:
                 return [self._send(time, message, when)]
-        self.lost = "a violation can no longer be avoided" if broken is None else broken
+        self.lost = "a violation can no longer be avoided"
+        if violated is not None:
+            label, is_assumed = violated
+            what = "the assumption " if is_assumed else ""
+            self.lost = f"{what}`{label}` is violated"
         return [Deed(time, Action.LOST, self.outs, reason=self.lost)]
 
     def _send(self, time: int, message: Message, why: str) -> Deed:
-        self.watched.hear(time, message.out, message.values)
+        self._take(time, message.out, message.values)
         values = message.values
         return Deed(time, Action.SENT, (message.out,), None, message.name, values, why)
 
@@ -219,8 +241,8 @@ class Guard:
         after.hear(time, out, values)
         if after.is_blind:
             return "it has no value"
-        if after.broken is not None:
-            return after.broken
+        if after.violated is not None:
+            return f"it would violate `{after.violated[0]}`"
         if not after.rests:
             return "a violation could no longer be avoided after it"
         return None if after.has_begun else "not all properties have begun"
@@ -241,5 +263,5 @@ class Guard:
         """Where all is once `message` has left; None if it may not rest there."""
         after = watched.fork()
         after.hear(time, message.out, message.values)
-        rests = not after.is_blind and after.broken is None and after.rests
+        rests = not after.is_blind and after.violated is None and after.rests
         return after if rests else None

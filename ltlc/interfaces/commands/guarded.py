@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Sequence
 
 from ltlc.analysis.guards.solution import TooManyPlacesError, solve
+from ltlc.compiler import Compiled
 from ltlc.interfaces.api.prepare import Prepared
 from ltlc.interfaces.commands.common import unusable
 from ltlc.interfaces.commands.progress import saying
@@ -25,17 +27,22 @@ def guarding_of(prepared: Prepared, options: argparse.Namespace) -> Guarding | i
         return unusable(f"--guard: {specification.source.name} has no guard")
     if reason := _not_followed(specification):
         return unusable(f"--guard: {reason}")
-    properties = [Property(each.specification, each.formula, each.monitor) for each in prepared.compiled]
-    solved: list[Solved] = []
-    with saying("solving the guards", options.quiet):
-        for guards in together(specification.guards, specification.properties):
-            arena = arena_of(guards, properties)
-            try:
-                region = solve(arena).region()
-            except TooManyPlacesError as error:
-                return unusable(f"--guard: the game of {' and '.join(guard.out for guard in guards)} {error}")
-            solved.append(Solved(guards, arena, region, conditions_held(guards, specification.properties)))
-    return Guarding(specification, solved)
+    try:
+        with saying("solving the guards", options.quiet):
+            return Guarding(specification, solved(specification, prepared.compiled))
+    except TooManyPlacesError as error:
+        return unusable(f"--guard: the game of the guards {error}")
+
+
+def solved(specification: Specification, compiled: Sequence[Compiled]) -> list[Solved]:
+    """The guards of `specification`, those together that share properties. Raises TooManyPlacesError."""
+    properties = [Property(each.specification, each.formula, each.monitor) for each in compiled]
+    found = []
+    for guards in together(specification.guards, specification.properties):
+        arena = arena_of(guards, properties)
+        conditions = conditions_held(guards, specification.properties)
+        found.append(Solved(guards, arena, solve(arena).region(), conditions))
+    return found
 
 
 def refused_beside(options: argparse.Namespace) -> str | None:

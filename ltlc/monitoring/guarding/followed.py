@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
-from itertools import product
-from typing import Any
 
 from ltlc.dataclass import dataclass
 from ltlc.runtime.guarding import Values
@@ -16,11 +14,11 @@ from ltlc.runtime.session import Plan
 from ltlc.semantics import finite
 from ltlc.semantics.arenas import Arena, Joint, Outcome, Part, Place, Region, Sent, Standing, standing
 from ltlc.semantics.ltl import Formula
-from ltlc.semantics.ordered_machine import OrderedMachine, Timed
+from ltlc.semantics.ordered_machine import OrderedMachine, Timed, is_inside
 from ltlc.semantics.reset_machine import Clocks, ResetMachine
 from ltlc.semantics.timed_atoms import counts_of
 from ltlc.semantics.timed_run import TimedRun
-from ltlc.semantics.words import Letter
+from ltlc.semantics.words import Letter, letters_over
 from ltlc.specification.arrivals import waited_for
 from ltlc.specification.atoms import Atom
 from ltlc.specification.evaluation import truth
@@ -80,6 +78,8 @@ class Arrangement:
     ) -> None:
         """`conditions` are the atoms of values in the arena, `properties` its parts by their labels."""
         self.arena, self.region = arena, region
+        self._clocks: dict[tuple[int, Clocks | Timed, Letter], Clocks | Timed] = {}
+        self._resting: dict[tuple[Joint, Letter, frozenset[str]], bool] = {}
         of_parts = [properties[part.label] for part in arena.parts]
         asked = [_reads_of(atom) for atom in conditions.values()]
         inputs = [wanted_of(read) for read in (*(r for own in asked for r in own), *_all_inputs(of_parts))]
@@ -111,52 +111,58 @@ class Arrangement:
         )
 
     @cached_property
+    def _places(self) -> dict[Joint, list[Joint]]:
+        """The joint places where guards may rest, by what they are without the order of clocks."""
+        found: dict[Joint, list[Joint]] = {}
+        for joint in self.region.rests:
+            found.setdefault(_without_order(joint), []).append(joint)
+        return found
+
+    @cached_property
     def machines(self) -> list[ResetMachine | OrderedMachine]:
         """Of each part: that of its clocks, with their order where the region's places have it."""
-        is_ordered = any(
-            isinstance(at, Place) and at.clocks != at.reset for j in self.region.rests for at in j.standings
-        )
-        return [
-            OrderedMachine(part.time, exact=True) if is_ordered and part.has_order else part.time
-            for part in self.arena.parts
-        ]
+        places = (at for joint in self.region.rests for at in joint.standings)
+        is_ordered = any(isinstance(at, Place) and isinstance(at.clocks, Timed) for at in places)
+        return [OrderedMachine(p.time) if is_ordered and p.has_order else p.time for p in self.arena.parts]
 
     def clocks_after(self, k: int, at: Place, letter: Letter) -> Clocks | Timed:
         """The clocks of part k once `letter` has come where it is `at`."""
         key = (k, at.clocks, letter)
-        if key not in self._moves:
-            machine: Any = self.machines[k]
-            (move,) = machine.moves(at.clocks, letter, lambda held, p: held if finite.holds(p, (held,)) else None)
-            self._moves[key] = move.target
-        return self._moves[key]
-
-    @cached_property
-    def _moves(self) -> dict[tuple[int, Clocks | Timed, Letter], Clocks | Timed]:
-        return {}
-
-    @cached_property
-    def _by_letter(self) -> dict[tuple[Joint, Letter, frozenset[str]], bool]:
-        return {}
+        if key not in self._clocks:
+            machine = self.machines[k]
+            (move,) = self.arena.parts[k].time.moves(
+                at.reset, letter, lambda held, p: held if finite.holds(p, (held,)) else None
+            )
+            self._clocks[key] = move.target
+            if isinstance(machine, OrderedMachine) and isinstance(at.clocks, Timed):
+                zone = machine.after(at.clocks, move.cases)
+                assert zone is not None
+                self._clocks[key] = Timed(move.target, zone)
+        return self._clocks[key]
 
     def rests(self, joint: Joint, letter: Letter, unknown: frozenset[str]) -> bool:
         """Whether guards may rest at `joint`, where atoms hold as in `letter`, whatever the `unknown` ones are."""
         key = (joint, letter, unknown)
-        if key not in self._by_letter:
-            formula = self.region.rests.get(joint)
-            self._by_letter[key] = formula is not None and all(
-                self._holds(formula, letter, some) for some in _all(unknown)
-            )
-        return self._by_letter[key]
+        if key not in self._resting:
+            around = (other for other in self._places.get(_without_order(joint), ()) if _is_inside(joint, other))
+            self._resting[key] = any(self._holds_in_all(self.region.rests[o], letter, unknown) for o in around)
+        return self._resting[key]
 
-    def _holds(self, formula: Formula, letter: Letter, also: Letter) -> bool:
-        whole = letter | also
-        return not self.arena.alphabet.allows(whole) or finite.holds(formula, (whole,))
+    def _holds_in_all(self, formula: Formula, letter: Letter, unknown: frozenset[str]) -> bool:
+        whole = (letter | some for some in letters_over(sorted(unknown)))
+        return all(finite.holds(formula, (each,)) for each in whole if self.arena.alphabet.allows(each))
 
 
-def _all(unknown: Collection[str]) -> Iterator[Letter]:
-    names = sorted(unknown)
-    for answers in product((False, True), repeat=len(names)):
-        yield frozenset(name for name, holds in zip(names, answers, strict=True) if holds)
+def _without_order(joint: Joint) -> Joint:
+    """`joint` without the order of clocks."""
+    return Joint(joint.sent, tuple(Place(a.state, a.reset) if isinstance(a, Place) else a for a in joint.standings))
+
+
+def _is_inside(joint: Joint, other: Joint) -> bool:
+    """Whether what clocks can read at `joint`, they can at `other`, which is the same without their order."""
+    pairs = zip(joint.standings, other.standings, strict=True)
+    clocks = ((a.clocks, b.clocks) for a, b in pairs if isinstance(a, Place) and isinstance(b, Place))
+    return all(is_inside(a.zone, b.zone) for a, b in clocks if isinstance(a, Timed) and isinstance(b, Timed))
 
 
 def _reads_of(atom: Atom) -> tuple[Read, ...]:
@@ -220,12 +226,11 @@ class Followed:
         return Outcome.WAITING not in self.joint.standings
 
     @property
-    def broken(self) -> str | None:
-        """That an assumption is broken, or that a kept property is violated, by its label."""
+    def violated(self) -> tuple[str, bool] | None:
+        """The label of a property that is violated, first of all an assumption, and whether it is one."""
         parts = zip(self._of.arena.parts, self.joint.standings, strict=True)
-        over = [part for part, at in parts if at is Outcome.VIOLATED]
-        assumed = next((f"the assumption `{part.label}` is broken" for part in over if part.is_assumed), None)
-        return assumed or next((f"`{part.label}` is violated" for part in over), None)
+        over = [(not part.is_assumed, part.label) for part, at in parts if at is Outcome.VIOLATED]
+        return next(((label, not is_kept) for is_kept, label in sorted(over)), None)
 
     @property
     def rests(self) -> bool:

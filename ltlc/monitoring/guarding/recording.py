@@ -91,7 +91,7 @@ class GuardedRecording:
     """The run that left guards; `commands` has the names that these are read by, each with that of what is let through.
 
     It `is_unguarded` if the recording has no commands, and what was recorded behind the guard was taken for them. What
-    the guards did are the `deeds`, in the order of time.
+    the guards did are the `deeds`, in the order of time; the `first` row has this time.
     """
 
     guarding: Guarding
@@ -101,6 +101,7 @@ class GuardedRecording:
     commands: Mapping[str, str]
     is_unguarded: bool = False
     deeds: list[Deed] = field(default_factory=list)
+    first: Nanoseconds | None = None
 
     @property
     def columns(self) -> tuple[str, ...]:
@@ -145,8 +146,12 @@ class GuardedRecording:
 
     def blocks(self) -> Iterator[Block]:
         """See `Recording`."""
-        run = _Run(self, self.plan(self.columns))
+        plan = self.plan(self.columns)
+        run = GuardedRun(self.guarding, self.signals, self.commands, plan, is_unguarded=self.is_unguarded)
+        self.deeds = run.deeds
         for block in self.recording.blocks():
+            if self.first is None and len(block.times):
+                self.first = int(block.times[0])
             for time, names, values, topics in block.rows({*self.recording.columns}):
                 run.row(time, dict(zip(names, values, strict=True)), topics)
                 if len(run.taken) >= ROWS:
@@ -157,30 +162,44 @@ class GuardedRecording:
 
 
 @dataclass(frozen=True, slots=True)
-class _Event:
+class Event:
+    """A message of a guarded run; `values` are its samples."""
+
     time: Nanoseconds
     topic: str
     values: Values
 
 
-class _Run:
-    """The guards along one recording; `taken` are the messages that came on other topics, or left a guard."""
+class GuardedRun:
+    """Guards along one run; `taken` are the messages that came on other topics, or left a guard.
 
-    def __init__(self, of: GuardedRecording, plan: Plan) -> None:
-        self._of, self.taken = of, list[_Event]()
-        specification = of.guarding.specification
+    In the samples that come, those of commands go by the names in `commands`, each with that of what is let through.
+    """
+
+    def __init__(
+        self,
+        guarding: Guarding,
+        signals: Mapping[str, Signal],
+        commands: Mapping[str, str],
+        plan: Plan,
+        *,
+        is_unguarded: bool = False,
+    ) -> None:
+        self.taken: list[Event] = []
+        self.deeds: list[Deed] = []
+        self._signals, self._commands = signals, commands
+        specification = guarding.specification
         self._lead = specification.lead
         self._raws = {guard.raw: guard.out for guard in specification.guards}
         self._outs = {guard.out for guard in specification.guards}
-        if of.is_unguarded:
+        if is_unguarded:
             self._raws = {out: out for out in self._outs}
         readings = [signal for signal in plan.signals if isinstance(signal, sampling.Reading)]
         self._topics = {signal.name: signal.topic for signal in readings}
-        self._columns = {r.name: Column(of.signals[r.name].type, of.signals[r.name].numbers) for r in readings}
+        self._columns = {r.name: Column(signals[r.name].type, signals[r.name].numbers) for r in readings}
         properties = {each.label: each for each in specification.properties}
         self._arranged = [
-            (some, Arrangement(some.arena, some.region, some.conditions, properties, plan))
-            for some in of.guarding.solved
+            (some, Arrangement(some.arena, some.region, some.conditions, properties, plan)) for some in guarding.solved
         ]
         self._guards: list[tuple[Solved, Guard]] = []
 
@@ -189,8 +208,8 @@ class _Run:
         messages: dict[str, dict[str, sampling.Value]] = {}
         commands: dict[str, dict[str, sampling.Value]] = {}
         for name, value in samples.items():
-            if name in self._of.commands:
-                let_through = self._of.commands[name]
+            if name in self._commands:
+                let_through = self._commands[name]
                 commands.setdefault(self._topics[let_through], {})[let_through] = value
             if name in self._topics and self._topics[name] not in self._outs:
                 messages.setdefault(self._topics[name], {})[name] = value
@@ -201,7 +220,7 @@ class _Run:
                 messages.setdefault(topic, {})
         self.act(time)
         for topic, values in messages.items():
-            self._hear(_Event(time, topic, values))
+            self._hear(Event(time, topic, values))
         for out, values in commands.items():
             self._command(time, out, values)
 
@@ -218,13 +237,13 @@ class _Run:
         """The session begins with the first message."""
         for some, arrangement in () if self._guards else self._arranged:
             messages = [
-                _message(fallback, guard.out, self._of.signals, self._topics)
+                _message(fallback, guard.out, self._signals, self._topics)
                 for guard in some.guards
                 for fallback in guard.fallbacks
             ]
             self._guards.append((some, Guard(Followed(arrangement, time), some.arena.outs, messages, self._lead)))
 
-    def _hear(self, event: _Event, sender: int | None = None) -> None:
+    def _hear(self, event: Event, sender: int | None = None) -> None:
         """A message came, or left a guard: the others hear it."""
         self._begin(event.time)
         self.taken.append(event)
@@ -240,9 +259,9 @@ class _Run:
 
     def _done(self, number: int, deeds: Sequence[Deed]) -> None:
         for deed in deeds:
-            self._of.deeds.append(deed)
+            self.deeds.append(deed)
             if deed.values is not None:
-                self._hear(_Event(deed.time, deed.outs[0], deed.values), number)
+                self._hear(Event(deed.time, deed.outs[0], deed.values), number)
 
     def block(self) -> Block:
         """The messages that were taken since the last one."""
@@ -253,7 +272,7 @@ class _Run:
         return Block(times, samples, {topic: _rows(event.topic == topic for event in events) for topic in topics})
 
     @staticmethod
-    def _column(name: str, column: Column, events: Sequence[_Event]) -> Samples:
+    def _column(name: str, column: Column, events: Sequence[Event]) -> Samples:
         rows = _rows(name in event.values for event in events)
         return Samples(rows, packed([events[row].values[name] for row in rows.tolist()], column))
 

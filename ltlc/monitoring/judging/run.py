@@ -260,6 +260,8 @@ class Judge:
         times = (watch.nanoseconds, perf_counter_ns() - start - watch.nanoseconds)
         found += [*part.remarks(), *recording.remarks(), *self._left_out(session)]
         session.zero, session.times = part.zero, self.reading.times
+        if guarded is not None and session.zero is None:
+            session.zero = guarded.first  # what came first may have been held back
         trails = tuple(t.observer.trail for t in session.tracks if isinstance(t.observer, Trailing))
         if damage is not None:
             found.append(damage)
