@@ -183,7 +183,7 @@ class Guard:
             return None
         if self.lost is not None or self.watched.is_silent or self._outlasts(due):
             return due, None, ""
-        moment = max(self.watched.time, min(due - 1, due - self.lead))
+        moment = max(self.watched.time, due - 1 - self.lead)
         for message in self.fallbacks:
             after = self._having_sent(self.watched, moment, message)
             if after is not None:

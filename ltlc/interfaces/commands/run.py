@@ -134,9 +134,10 @@ def _run(options: argparse.Namespace) -> int:
     if options.guard:
         from ltlc.interfaces.commands.guarded import guarding_of
 
-        guarding = guarding_of(prepared, options)
-        if isinstance(guarding, int):
-            return guarding
+        found_guards = guarding_of(prepared, options)
+        if isinstance(found_guards, int):
+            return found_guards
+        guarding = found_guards
     keep_trails = bool(options.report or options.output)
     evidence = None
     if options.evidence:

@@ -312,13 +312,7 @@ class Followed:
             may = self._of.arena.beginnings(plan.part, before, sent, topic)
             if True not in may or not plan.begins_with(self._known) or self._lacks(plan):
                 return at
-            run = TimedRun(
-                plan.part.time.trackers, plan.part.time.news, self._began, counts=counts_of(plan.part.formula)
-            )
-            for name, of in plan.part.news.items():
-                if of in self._heard:
-                    list(run.hear(self._heard[of], [name]))
-            self._runs[k], at = run, Place(0, self._of.machines[k].initial)
+            self._runs[k], at = self._begun(plan.part), Place(0, self._of.machines[k].initial)
         run = self._runs[k]
         if run is None or not isinstance(at, Place) or topic not in plan.part.topics:
             return at
@@ -327,6 +321,14 @@ class Followed:
             return self._along(k, at, run.hear(time, news))
         held = frozenset(name for name in plan.atoms if self._answers[name] is True)
         return self._along(k, at, run.step(time, held | news))
+
+    def _begun(self, part: Part) -> TimedRun:
+        """A run of a part that begins now: ages count from what has come before."""
+        run = TimedRun(part.time.trackers, part.time.news, self._began, counts=counts_of(part.formula))
+        for name, topic in part.news.items():
+            if topic in self._heard:
+                list(run.hear(self._heard[topic], [name]))
+        return run
 
     def _lacks(self, plan: _PartPlan) -> bool:
         """Whether something that a part compares is not a number."""

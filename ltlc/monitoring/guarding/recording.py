@@ -61,7 +61,7 @@ class Guarding:
         """
         outs = {guard.out: guard for guard in self.specification.guards}
         sent = {name: signal for name, signal in signals.items() if _topic(signal) in outs}
-        asked = {name: _asked(outs[_topic(signal)], name, signal) for name, signal in sent.items()}
+        asked = {name: _asked(outs[_topic(signal)], signal) for name, signal in sent.items()}
         others = {name: signal for name, signal in signals.items() if name not in sent}
         twins = {twin.name: twin for twin in asked.values()}
         recording = open_(path, {**others, **twins}, reading)
@@ -78,12 +78,13 @@ def _topic(signal: Signal) -> str:
     return signal.definition.topic if isinstance(signal.definition, Field) else ""
 
 
-def _asked(guard: Stated, name: str, signal: Signal) -> Signal:
+def _asked(guard: Stated, signal: Signal) -> Signal:
     """What the commands of `guard` have where what it lets through has `signal`."""
     assert isinstance(signal.definition, Field)
     twin = replace(signal.definition, topic=guard.raw)
     declared = (each for each in guard.asked if isinstance(each.definition, Field) and each.definition == twin)
-    return next(declared, replace(signal, name=f"{name} on {guard.raw}", definition=twin))
+    column = "/".join([guard.raw, *map(str, twin.path)])
+    return next(declared, replace(signal, name=column, definition=twin))
 
 
 @dataclass
