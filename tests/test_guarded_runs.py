@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from effort import share_of
 
-from benchmarks.guards import CMD, EXAMPLES, SCAN, SCANS, SPEEDS, Driven, Example
+from benchmarks.guarded import CMD, EXAMPLES, SCAN, SCANS, SPEEDS, Driven, Example
 from ltlc.cli import main
 from ltlc.monitoring.guarding.followed import Followed
 
