@@ -8,10 +8,10 @@ on forks. Standard library only.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from enum import Enum
 from typing import Protocol
 
+from ltlc.dataclass import dataclass
 from ltlc.runtime.sampling import Value
 
 Values = Mapping[str, Value]
