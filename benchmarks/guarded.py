@@ -77,6 +77,10 @@ EXAMPLES: dict[str, Example] = {
         CMD + "decl joy /joy sensor_msgs/Joy.axes[0]\np: always (age(joy) > 500 ms implies speed == 0)",
         SPEEDS | {"/joy": {"joy": [0.0, 1.0]}},
     ),
+    "heartbeat and near": Example(
+        CMD + SCAN + "p: always age(speed) <= 100 ms\nq: always (new speed and min(scan) < 0.5 implies speed <= 0.2)",
+        SPEEDS | SCANS,
+    ),
     "heartbeat": Example(CMD + "p: always age(speed) <= 100 ms", SPEEDS),
     "rate of commands": Example(
         CMD + "p: always (new speed implies not previously once new speed within 20 ms)", SPEEDS

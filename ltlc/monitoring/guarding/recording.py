@@ -14,7 +14,8 @@ from ltlc.inputs.recordings import Block, Recording
 from ltlc.inputs.recordings.blocks import ROWS, Places, Samples, packed
 from ltlc.inputs.recordings.reading import ReadOptions
 from ltlc.inputs.recordings.rows import Column
-from ltlc.monitoring.guarding.followed import Arrangement, Followed
+from ltlc.monitoring.guarding.arrangement import Arrangement
+from ltlc.monitoring.guarding.followed import Followed
 from ltlc.monitoring.guarding.report import GuardReport
 from ltlc.runtime import sampling
 from ltlc.runtime.guarding import Deed, Guard, Message, Values
