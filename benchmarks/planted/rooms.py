@@ -47,7 +47,9 @@ ROOMS = {
     "test_ulog.py",
     "base/render": "test_render*.py",
     "rules": "test_rules.py",
-    "runtime": "test_runtime_*.py test_recordings*.py test_openings.py test_each*.py test_explained.py",
+    "monitoring/guarding": "test_guarded_runs.py",
+    "runtime": "test_runtime_*.py test_guarded_runs.py test_recordings*.py test_openings.py test_each*.py "
+    "test_explained.py",
     "semantics": "test_semantics_*.py test_diagrams.py test_runtime_episodes.py test_openings.py",
     "interfaces/serve": "test_serve.py test_serve_browser.py",
     "specification": "test_specification_*.py test_requirements.py test_language_signals.py test_language_margins.py "

@@ -8,7 +8,7 @@ from dataclasses import field
 from ltlc.base.source import Span
 from ltlc.dataclass import dataclass
 from ltlc.semantics.durations import UNITS, Nanoseconds
-from ltlc.specification.expressions import Boolean, Number, String
+from ltlc.specification.expressions import Boolean, Number, Signal, String
 
 LEAD: Nanoseconds = 10 * UNITS["ms"]
 """How long before a deadline a guard acts, unless the file sets `_lead_`."""
@@ -36,7 +36,8 @@ class Fallback:
 class Guard:
     """`guard raw to out else fallbacks`: commands come on the topic `raw`, and what is let through leaves on `out`.
 
-    Messages on both are of the type `message`, a full name. Of the `fallbacks` the first that helps is sent.
+    Messages on both are of the type `message`, a full name. Of the `fallbacks` the first that helps is sent. The
+    signals `asked` are those declared on `raw`; in a table they are the columns with the commands.
     """
 
     raw: str
@@ -44,3 +45,4 @@ class Guard:
     message: str
     fallbacks: tuple[Fallback, ...]
     span: Span = field(compare=False)
+    asked: tuple[Signal, ...] = field(default=(), compare=False)

@@ -17,7 +17,7 @@ from ltlc.frontend.language.values import Scalar, Text, Truth, expressions
 from ltlc.frontend.syntax import tree as syntax
 from ltlc.frontend.syntax.lexer import skip_blank
 from ltlc.inputs.messages.definitions import FieldType
-from ltlc.specification.expressions import Boolean, Current, Field, Number, String
+from ltlc.specification.expressions import Boolean, Current, Field, Number, PathStep, Signal, String
 from ltlc.specification.guards import Constant, Fallback, FieldPath, Guard
 from ltlc.specification.specification import PropertySpecification, topics
 from ltlc.specification.text import number_text
@@ -57,20 +57,22 @@ def read_as_commands(checker: Checker, found: Sequence[Guard], used: set[str]) -
 
     In a table, they are the columns with the commands.
     """
-    fields = {name: tuple(_fields(checker, name)) for name in checker.names.declarations}
     for guard in found:
-        let_through = {f.path for name in used for f in fields.get(name, ()) if f.topic == guard.out}
-        yield from (
-            name for name, own in fields.items() if any(f.topic == guard.raw and f.path in let_through for f in own)
-        )
+        let_through = {path for name in used for path in _paths(checker, name, guard.out)}
+        yield from (n for n in checker.names.declarations if not let_through.isdisjoint(_paths(checker, n, guard.raw)))
 
 
-def _fields(checker: Checker, name: str) -> Iterator[Field]:
-    """The fields of messages that a declared name reads."""
-    declared = checker.names.declarations[name]
-    for part in expressions(declared) if declared is not None else ():
-        if isinstance(part, Current) and isinstance(part.signal.definition, Field):
-            yield part.signal.definition
+def _paths(checker: Checker, name: str, topic: str) -> set[tuple[PathStep, ...]]:
+    """The paths of the fields of a topic that a declared name reads."""
+    definitions = (signal.definition for signal in _signals(checker, name))
+    return {of.path for of in definitions if isinstance(of, Field) and of.topic == topic}
+
+
+def _signals(checker: Checker, name: str) -> Iterator[Signal]:
+    """The signals that a declared name is made of."""
+    declared = checker.names.declarations.get(name)
+    parts = expressions(declared) if declared is not None else ()
+    return (part.signal for part in parts if isinstance(part, Current))
 
 
 _ASSUMING = ("assume", "assumes", "assumption")
@@ -111,7 +113,9 @@ def _guard(
     fallbacks = [_fallback(checker, word, command, messages, type_) for word in command.fallbacks]
     if type_ is None or None in fallbacks:
         return None
-    return Guard(raw, out, type_, tuple(each for each in fallbacks if each is not None), command.span)
+    signals = (signal for name in checker.names.declarations for signal in _signals(checker, name))
+    asked = tuple(s for s in signals if isinstance(s.definition, Field) and s.definition.topic == raw)
+    return Guard(raw, out, type_, tuple(each for each in fallbacks if each is not None), command.span, asked)
 
 
 def _type(checker: Checker, command: syntax.Guard, raw: str, out: str) -> str | None:

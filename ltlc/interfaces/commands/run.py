@@ -57,6 +57,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="write what the verdicts follow from, to be checked by `ltlc certify --evidence`; of several recordings, "
         "with --results, what is missing is appended",
     )
+    parser.add_argument(
+        "--guard",
+        action="store_true",
+        help="judge what the guards of the file would have let through, and report what they would have done",
+    )
     add_cut(parser.add_argument_group("extracts"))
     add_watch(parser)
 
@@ -84,6 +89,14 @@ def run(options: argparse.Namespace) -> int:
     """Judge once, or whenever a file changes; the exit code."""
     if not options.cut and (options.before, options.after) != (None, None):
         return unusable("--before and --after need --cut")
+    if options.guard:
+        from ltlc.interfaces.commands.guarded import refused_beside
+        from ltlc.monitoring.campaigns.places import is_one
+
+        if other := refused_beside(options):
+            return unusable(f"--guard cannot be combined with {other}")
+        if not is_one(options.recordings):
+            return unusable("--guard is tried on one recording at a time")
     if options.watch:
         outputs = (options.report, options.output, options.summary, options.results, options.evidence, options.cut)
         read = [options.specification, *options.recordings, *options.msg_path]
@@ -117,6 +130,14 @@ def _run(options: argparse.Namespace) -> int:
     prepared = compile_file(options, paths)
     if isinstance(prepared, int):
         return prepared
+    guarding = None
+    if options.guard:
+        from ltlc.interfaces.commands.guarded import guarding_of
+
+        found_guards = guarding_of(prepared, options)
+        if isinstance(found_guards, int):
+            return found_guards
+        guarding = found_guards
     keep_trails = bool(options.report or options.output)
     evidence = None
     if options.evidence:
@@ -135,6 +156,7 @@ def _run(options: argparse.Namespace) -> int:
         hashed=options.format != "text" or bool(options.results or options.output),
         evidence=evidence,
         cutting=cut,
+        guarding=guarding,
     )
     if found is not None:
         from ltlc.interfaces.commands.campaign import run_several

@@ -43,6 +43,8 @@ from ltlc.specification.specification import PropertySpecification, Specificatio
 
 if TYPE_CHECKING:
     from ltlc.assurance.evidence.document import Document
+    from ltlc.monitoring.guarding.recording import GuardedRecording, Guarding
+    from ltlc.monitoring.guarding.report import GuardReport
     from ltlc.monitoring.judging.cutting import Cut, Cutting
     from ltlc.monitoring.judging.evidence import Evidence
     from ltlc.monitoring.judging.whole_runs import WholeRuns
@@ -61,7 +63,7 @@ class RunReport:
     topic who defines its messages. `blocks` judged the session, if anything could be read. The `specification` is what
     was judged by. The recording is what is in the `file`, if it is in one; its SHA-256 is taken for a document.
     There is `evidence` if it was asked for and all could be read. It `is_part` if only the rows of some time were asked
-    for. If extracts were asked for, they have been `cut`.
+    for. If extracts were asked for, they have been `cut`. It is the run that left guards, if there is a `guard` report.
     """
 
     recording: str
@@ -78,12 +80,15 @@ class RunReport:
     evidence: Document | None = None
     is_part: bool = False
     cut: Cut | None = None
+    guard: GuardReport | None = None
 
     @property
     def exit_code(self) -> int:
-        """0 all hold; 1 one is violated; 2 unusable or damaged; 3 none violated, but one is unmet or never started."""
+        """0 all hold; 1 one is violated, or a guard lost; 2 unusable or damaged; 3 one is unmet or never started."""
         if self.session is None or self.is_damaged or (self.cut is not None and self.cut.error):
             return 2
+        if self.guard is not None and self.guard.has_lost:
+            return 1
         left_out = any(slices.left_out for slices in self.session.sliced)
         return reports.exit_code([track.verdict for track in self.session.tracks], left_out)
 
@@ -100,7 +105,8 @@ class RunReport:
             if track.verdict is Verdict.VIOLATED:
                 more = violations_text(session, track) if with_all and track.slices is None else ""
                 figures.append(f"{reports.figure(session, track)}{more}\n")
-        return "".join([*figures, reports.summary(session)])
+        guarded = "" if self.guard is None else f"\n{self.guard.text(session, with_all)}"
+        return "".join([*figures, reports.summary(session), guarded])
 
     def json(self) -> str:
         """The JSON document of `ltlc run`, as text."""
@@ -117,6 +123,8 @@ class RunReport:
                 each.update(violations_report(self.session, track))
                 if self.cut is not None:
                     each["extracts"] = list(self.cut.written[track.property.label])
+            if self.guard is not None:
+                document["guard"] = self.guard.document(self.session)
         document["is_damaged"] = self.is_damaged
         document["is_part"] = self.is_part
         document["definitions"] = dict(self.definitions)
@@ -206,7 +214,8 @@ class Judge:
     Rows are taken from the time `reading.since` on, up to and including `reading.until`. `remarks` are on the monitors,
     and stand in each report before those on the recording. It `finds_all` violations of a property, or the first one.
     The documents of its reports have the SHA-256 of the recording if it is `hashed`, which takes a moment.
-    With `evidence` a report has that of its recording. With `cutting`, extracts of recordings are written.
+    With `evidence` a report has that of its recording. With `cutting`, extracts of recordings are written. With
+    `guarding`, what is judged is what guards let through.
     """
 
     compiled: Sequence[Compiled]
@@ -220,6 +229,7 @@ class Judge:
     hashed: bool = True
     evidence: Evidence | None = None
     cutting: Cutting | None = None
+    guarding: Guarding | None = None
 
     def prepare(self) -> None:
         """Make what takes other processes, before several of them judge by copies."""
@@ -231,7 +241,7 @@ class Judge:
         `watchers` get what was judged, block by block.
         """
         try:
-            recording = self.open(path, self.signals, self.reading)
+            recording, guarded = self._opened(path)
         except RecordingError as error:
             return RunReport(str(path), None, (error.diagnostic,), **self._made_of(path))
         found = self.remarks_on(path, recording)
@@ -250,6 +260,8 @@ class Judge:
         times = (watch.nanoseconds, perf_counter_ns() - start - watch.nanoseconds)
         found += [*part.remarks(), *recording.remarks(), *self._left_out(session)]
         session.zero, session.times = part.zero, self.reading.times
+        if guarded is not None and session.zero is None:
+            session.zero = guarded.first  # what came first may have been held back
         trails = tuple(t.observer.trail for t in session.tracks if isinstance(t.observer, Trailing))
         if damage is not None:
             found.append(damage)
@@ -272,8 +284,16 @@ class Judge:
             judged,
             evidence=evidence,
             cut=None if judged is None or self.cutting is None else self.cutting.cut(session, path, name),
+            guard=None if guarded is None else guarded.report(part.since, part.until),
             **self._made_of(path),
         )
+
+    def _opened(self, path: Path) -> tuple[Recording, GuardedRecording | None]:
+        """The recording at `path`, and the same as guards would have let it through. Raises RecordingError."""
+        if self.guarding is None:
+            return self.open(path, self.signals, self.reading), None
+        guarded = self.guarding.through(self.plan, self.open, path, self.signals, self.reading)
+        return guarded, guarded
 
     def _whole_runs(self, columns: Collection[str]) -> WholeRuns | None:
         """Those that evidence needs, where samples of these signals come in themselves."""

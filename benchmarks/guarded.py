@@ -1,0 +1,206 @@
+"""Random runs against guards: what leaves them is judged by `ltlc.monitor`, which must find no violation.
+
+    python -m benchmarks.guarded 100000 [NAME…]     # so many events for each guard
+
+Messages come where it is hardest, many at the same time or a nanosecond before, at and after deadlines.
+"""
+
+from __future__ import annotations
+
+import argparse
+import random
+import sys
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from time import perf_counter
+
+import ltlc
+from ltlc.automata import Budget
+from ltlc.backends.python.load import load_plan
+from ltlc.base.source import Source
+from ltlc.compiler import compile_specification
+from ltlc.frontend.language import load_text
+from ltlc.inputs.recordings.lacks import signals_of
+from ltlc.interfaces.commands.guarded import solved
+from ltlc.monitoring.guarding.recording import GuardedRun, Guarding
+from ltlc.runtime.guarding import Action
+from ltlc.semantics.encodings import EPISODE
+from ltlc.specification.expressions import Field
+
+MS = 1_000_000
+LONGEST = 400
+"""So many events a run has at most: what is rare at its beginning comes often."""
+
+
+@dataclass(frozen=True)
+class Example:
+    """A guard as people write it, and what may come on each topic, by signals; commands by those of what is let out."""
+
+    text: str
+    values: Mapping[str, Mapping[str, Sequence[object]]]
+
+
+CMD = """guard /cmd_vel_raw to /cmd_vel else stop
+message stop {linear.x: 0}
+decl speed /cmd_vel geometry_msgs/Twist.linear.x
+"""
+SCAN = "decl scan /scan sensor_msgs/LaserScan.ranges\n"
+SPEEDS: dict[str, Mapping[str, Sequence[object]]] = {"/cmd_vel": {"speed": [0.0, 0.1, 0.2, 0.5, 1.0]}}
+SCANS: dict[str, Mapping[str, Sequence[object]]] = {"/scan": {"scan": [(0.25, 2.0), (0.625, 2.0), (5.0, 1.25)]}}
+
+
+def _flags(*topics: str) -> dict[str, Mapping[str, Sequence[object]]]:
+    return {f"/{name}": {name: [True, False]} for name in topics}
+
+
+EXAMPLES: dict[str, Example] = {
+    "near": Example(
+        CMD + SCAN + "p: always (min(scan) < 0.5 implies eventually speed <= 0.2 within 100 ms)\n"
+        "q: always (new speed and min(scan) < 0.5 implies speed <= 0.2)",
+        SPEEDS | SCANS,
+    ),
+    "near, an instant later": Example(
+        CMD + SCAN + "p: always (min(scan) < 0.5 and previously min(scan) < 0.5 implies speed <= 0.2)", SPEEDS | SCANS
+    ),
+    "e-stop until reset": Example(
+        CMD + "decl estop /estop std_msgs/Bool.data\ndecl reset /reset std_msgs/Bool.data\n"
+        "p: after_until estop, reset and not estop, (within 50 ms, eventually speed == 0)\n"
+        "q: after_until estop, reset and not estop, always (new speed implies speed == 0)",
+        SPEEDS | _flags("estop", "reset"),
+    ),
+    "slew rate": Example(
+        CMD + "p: always abs(speed - @{speed, -1}) <= 0.25", {"/cmd_vel": {"speed": [-0.5, -0.2, 0.0, 0.2, 0.4, 1.0]}}
+    ),
+    "dead man": Example(
+        CMD + "decl joy /joy sensor_msgs/Joy.axes[0]\np: always (age(joy) > 500 ms implies speed == 0)",
+        SPEEDS | {"/joy": {"joy": [0.0, 1.0]}},
+    ),
+    "heartbeat and near": Example(
+        CMD + SCAN + "p: always age(speed) <= 100 ms\nq: always (new speed and min(scan) < 0.5 implies speed <= 0.2)",
+        SPEEDS | SCANS,
+    ),
+    "heartbeat": Example(CMD + "p: always age(speed) <= 100 ms", SPEEDS),
+    "rate of commands": Example(
+        CMD + "p: always (new speed implies not previously once new speed within 20 ms)", SPEEDS
+    ),
+    "rate and near, as one": Example(
+        CMD + SCAN + "p: (always (new speed implies not previously once new speed within 20 ms)) and "
+        "(always (min(scan) < 0.5 implies eventually speed <= 0.2 within 100 ms))",
+        SPEEDS | SCANS,
+    ),
+    "battery low": Example(
+        'guard /goal_raw to /goal else dock\nmessage dock {data: "dock"}\ndecl goal /goal std_msgs/String.data\n'
+        "decl battery /battery std_msgs/Float32.data\n"
+        'p: always (new goal and battery < 0.2 implies goal == "dock")\n'
+        'q: always (battery < 0.1 implies eventually goal == "dock" within 2 s)',
+        {"/goal": {"goal": ["dock", "kitchen"]}, "/battery": {"battery": [0.0625, 0.15625, 0.75]}},
+    ),
+    "room, assumed": Example(
+        CMD + SCAN + "assume a: always min(scan) / 2 >= 0\n"
+        "p: always (speed > min(scan) / 2 implies eventually speed <= min(scan) / 2 within 200 ms)",
+        SPEEDS | SCANS,
+    ),
+    "two fallbacks": Example(
+        CMD.replace("else stop", "else crawl, stop")
+        + "message crawl {linear.x: 0.2}\n"
+        + SCAN
+        + "decl estop /estop std_msgs/Bool.data\n"
+        "p: always (min(scan) < 0.5 implies eventually speed <= 0.2 within 100 ms)\n"
+        "q: always (estop implies eventually speed == 0 within 50 ms)\n"
+        "r: always (new speed and estop implies speed == 0)",
+        SPEEDS | SCANS | _flags("estop"),
+    ),
+    "two guards": Example(
+        CMD + "guard /grip_raw to /grip else hold\nmessage hold {}\ndecl grip /grip std_msgs/Float64.data\n"
+        "p: never (speed > 0.2 and grip < 0)\nq: always (speed > 0.2 implies eventually speed <= 0.2 within 1 s)",
+        SPEEDS | {"/grip": {"grip": [-1.0, 0.0, 1.0]}},
+    ),
+}
+
+
+class Driven:
+    """A guard whose runs are drawn."""
+
+    def __init__(self, example: Example) -> None:
+        specification, problems = load_text(Source("guard", example.text))
+        assert specification is not None, [each.message for each in problems]
+        compiled, too_hard = compile_specification(specification, EPISODE, Budget())
+        assert not too_hard
+        self.example, self.specification = example, specification
+        self.signals = signals_of(specification.properties)
+        self.plan = load_plan(compiled, specification)
+        self.guarding = Guarding(specification, solved(specification, compiled))
+        self.raws = {guard.out: guard.raw for guard in specification.guards}
+        names = [name for of in example.values.values() for name in of]
+        judged = "\n".join(
+            line for line in example.text.splitlines() if not line.startswith(("guard", "message", "_lead_"))
+        )
+        self.judge = ltlc.monitor(judged.replace("assume ", ""), signals=names)
+        self.bounds = [20 * MS, 50 * MS, 90 * MS, 100 * MS, 200 * MS, 500 * MS, 1000 * MS, 2000 * MS]
+        self.labels = [each.label for each in specification.properties if not each.is_assumed]
+
+    def run(self, chance: random.Random, events: int) -> Counter[str]:
+        """One run of so many events; what the guards did, how often, and `violated` if a property is."""
+        sent = {
+            name: name
+            for name, s in self.signals.items()
+            if isinstance(s.definition, Field) and s.definition.topic in self.raws
+        }
+        run = GuardedRun(self.guarding, self.signals, sent, self.plan)
+        self.judge.reset()
+        found: Counter[str] = Counter()
+        time = 1000 * MS
+        topics = [*self.example.values]
+        others = [topic for topic in topics if topic not in self.raws]
+        for number in range(events):
+            time += self._gap(chance)
+            for topic in others if number == 0 else [chance.choice([*topics, *self.raws])]:
+                values = {name: chance.choice(of) for name, of in self.example.values[topic].items()}
+                run.row(time, values, ())
+            for event in run.taken:
+                self.judge.step(dict(event.values), time_ns=event.time)
+            run.taken.clear()
+        run.act(time)
+        self.judge.step({}, time_ns=time)
+        found.update(deed.action.value for deed in run.deeds)
+        found["violated"] = sum(self.judge.verdicts[label] is ltlc.Verdict.VIOLATED for label in self.labels)
+        assert all(one.time <= other.time for one, other in pairwise(run.deeds))
+        return found
+
+    def _gap(self, chance: random.Random) -> int:
+        about = chance.choice(self.bounds) - chance.choice([0, 0, 10 * MS]) + chance.choice([-1, 0, 1, 2])
+        return chance.choice([0, 0, 1, MS, 10 * MS, 30 * MS, about])
+
+
+def main(arguments: Sequence[str]) -> int:
+    """Drive each guard through random events; the exit code is 1 if a property was violated."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("events", type=int)
+    parser.add_argument("names", nargs="*")
+    parser.add_argument("--seed", type=int, default=1)
+    options = parser.parse_args(arguments)
+    violated = 0
+    for name, example in EXAMPLES.items():
+        if options.names and name not in options.names:
+            continue
+        driven, chance, start, left = (
+            Driven(example),
+            random.Random(f"{name} {options.seed}"),
+            perf_counter(),
+            options.events,
+        )
+        found: Counter[str] = Counter()
+        while left > 0:
+            length = min(left, chance.randint(2, LONGEST))
+            found += driven.run(chance, length)
+            left -= length
+        counts = ", ".join(f"{found[action.value]:,} {action.value}" for action in Action)
+        print(f"{name}: {counts}, {found['violated']} violated; {perf_counter() - start:.0f} s", flush=True)
+        violated += found["violated"]
+    return int(violated > 0)
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,1 @@
+"""Recordings as a guard would have let them through: what it is tried on before it drives."""

@@ -1,0 +1,184 @@
+"""What does not change along a guarded run: the arena, its region, and where samples stand."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from functools import cached_property
+
+from ltlc.dataclass import dataclass
+from ltlc.runtime import sampling
+from ltlc.runtime.sampling import Input, Sampler, Value, Wanted, Window
+from ltlc.runtime.session import Plan
+from ltlc.semantics import finite
+from ltlc.semantics.arenas import Arena, Joint, Part, Place, Region
+from ltlc.semantics.ltl import Formula
+from ltlc.semantics.ordered_machine import OrderedMachine, Timed, is_inside
+from ltlc.semantics.reset_machine import Clocks, ResetMachine
+from ltlc.semantics.words import Letter, letters_over
+from ltlc.specification.arrivals import waited_for
+from ltlc.specification.atoms import Atom
+from ltlc.specification.evaluation import truth
+from ltlc.specification.expressions import Current, New, Opening, Past, Read, Recent, Slope, operands, reads
+from ltlc.specification.specification import PropertySpecification, topics_of
+
+
+@dataclass(frozen=True)
+class Asked:
+    """A condition, what it reads, and where the values of that stand."""
+
+    atom: Atom
+    window: Window
+    wanted: tuple[Read, ...]
+
+    def answer(self, known: list[Value]) -> bool | Nan | None:
+        """Whether it holds; None if a value has not come, NAN if it is not a number."""
+        values = self.window.values(known)
+        if any(value is None for value in values):
+            return None
+        found = truth(self.atom.condition, dict(zip(self.wanted, values, strict=True)))
+        return NAN if found is None else found
+
+
+class Nan:
+    """What a condition is that compares what is not a number."""
+
+
+NAN = Nan()
+
+
+@dataclass(frozen=True)
+class PartPlan:
+    """What a part reads: the conditions that are its atoms, what makes a step of it, what it waits for."""
+
+    part: Part
+    atoms: frozenset[str]
+    window: Window
+    waits: Window
+
+    def begins_with(self, known: list[Value]) -> bool:
+        """Whether all that it waits for has a value."""
+        return all(value is not None for value in self.waits.values(known))
+
+
+class Arrangement:
+    """What does not change along a run: an arena with its region, and where the samples of a plan stand."""
+
+    def __init__(
+        self,
+        arena: Arena,
+        region: Region,
+        conditions: Mapping[str, Atom],
+        properties: Mapping[str, PropertySpecification],
+        plan: Plan,
+    ) -> None:
+        """`conditions` are the atoms of values in the arena, `properties` its parts by their labels."""
+        self.arena, self.region = arena, region
+        self._clocks: dict[tuple[int, Clocks | Timed, Letter], Clocks | Timed] = {}
+        self._resting: dict[tuple[Joint, Letter, frozenset[str]], bool] = {}
+        of_parts = [properties[part.label] for part in arena.parts]
+        asked = [_reads_of(atom) for atom in conditions.values()]
+        inputs = [wanted_of(read) for read in (*(r for own in asked for r in own), *_all_inputs(of_parts))]
+        self.sampler = Sampler(plan.signals, inputs)
+        window = self.sampler.window
+        self.asked = {
+            name: Asked(atom, window(map(wanted_of, own)), own)
+            for (name, atom), own in zip(conditions.items(), asked, strict=True)
+        }
+        self.plans = [self._plan(part, each) for part, each in zip(arena.parts, of_parts, strict=True)]
+        self.awaited = window(
+            wanted_of(read)
+            for each in of_parts
+            if waited_for(each)
+            for read in waited_for(each)
+            if set(topics_of(read.signal)).isdisjoint(arena.outs)
+        )
+        self.spoken = frozenset[str]().union(*(p.topics for p in arena.parts if p.waits)).difference(arena.outs)
+
+    def _plan(self, part: Part, of: PropertySpecification) -> PartPlan:
+        values = frozenset(name for name in part.monitor.atoms if name in self.asked)
+        window = self.sampler.window
+        return PartPlan(
+            part,
+            values,
+            window(map(wanted_of, of.inputs())),
+            window(map(wanted_of, waited_for(of))),
+        )
+
+    @cached_property
+    def _places(self) -> dict[Joint, list[Joint]]:
+        """The joint places where guards may rest, by what they are without the order of clocks."""
+        found: dict[Joint, list[Joint]] = {}
+        for joint in self.region.rests:
+            found.setdefault(_without_order(joint), []).append(joint)
+        return found
+
+    @cached_property
+    def machines(self) -> list[ResetMachine | OrderedMachine]:
+        """Of each part: that of its clocks, with their order where the region's places have it."""
+        places = (at for joint in self.region.rests for at in joint.standings)
+        is_ordered = any(isinstance(at, Place) and isinstance(at.clocks, Timed) for at in places)
+        return [OrderedMachine(p.time) if is_ordered and p.has_order else p.time for p in self.arena.parts]
+
+    def clocks_after(self, k: int, at: Place, letter: Letter) -> Clocks | Timed:
+        """The clocks of part k once `letter` has come where it is `at`."""
+        key = (k, at.clocks, letter)
+        if key not in self._clocks:
+            machine = self.machines[k]
+            (move,) = self.arena.parts[k].time.moves(
+                at.reset, letter, lambda held, p: held if finite.holds(p, (held,)) else None
+            )
+            self._clocks[key] = move.target
+            if isinstance(machine, OrderedMachine) and isinstance(at.clocks, Timed):
+                zone = machine.after(at.clocks, move.cases)
+                assert zone is not None
+                self._clocks[key] = Timed(move.target, zone)
+        return self._clocks[key]
+
+    def rests(self, joint: Joint, letter: Letter, unknown: frozenset[str]) -> bool:
+        """Whether guards may rest at `joint`, where atoms hold as in `letter`, whatever the `unknown` ones are."""
+        key = (joint, letter, unknown)
+        if key not in self._resting:
+            around = (other for other in self._places.get(_without_order(joint), ()) if _is_inside(joint, other))
+            self._resting[key] = any(self._holds_in_all(self.region.rests[o], letter, unknown) for o in around)
+        return self._resting[key]
+
+    def _holds_in_all(self, formula: Formula, letter: Letter, unknown: frozenset[str]) -> bool:
+        whole = (letter | some for some in letters_over(sorted(unknown)))
+        return all(finite.holds(formula, (each,)) for each in whole if self.arena.alphabet.allows(each))
+
+
+def _without_order(joint: Joint) -> Joint:
+    """`joint` without the order of clocks."""
+    return Joint(joint.sent, tuple(Place(a.state, a.reset) if isinstance(a, Place) else a for a in joint.standings))
+
+
+def _is_inside(joint: Joint, other: Joint) -> bool:
+    """Whether what clocks can read at `joint`, they can at `other`, which is the same without their order."""
+    pairs = zip(joint.standings, other.standings, strict=True)
+    clocks = ((a.clocks, b.clocks) for a, b in pairs if isinstance(a, Place) and isinstance(b, Place))
+    return all(is_inside(a.zone, b.zone) for a, b in clocks if isinstance(a, Timed) and isinstance(b, Timed))
+
+
+def _reads_of(atom: Atom) -> tuple[Read, ...]:
+    return tuple(dict.fromkeys(read for operand in operands(atom.condition) for read in reads(operand)))
+
+
+def _all_inputs(properties: Iterable[PropertySpecification]) -> Iterator[Read]:
+    return (read for each in properties for read in each.inputs())
+
+
+def wanted_of(read: Read) -> Wanted:
+    """What the runtime calls what is read; nothing is read at openings here."""
+    match read:
+        case Current(signal):
+            return Input(signal.name)
+        case Past(signal, samples):
+            return Input(signal.name, samples)
+        case Recent(signal, samples):
+            return sampling.Recent(signal.name, samples)
+        case Slope(signal):
+            return sampling.Slope(signal.name)
+        case New(signal):
+            return sampling.New(signal.name)
+        case Opening():
+            raise ValueError(f"a value at an opening is not followed: {read}")

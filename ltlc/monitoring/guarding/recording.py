@@ -1,0 +1,292 @@
+"""A recording as guards would have let it through: what they did with its commands, and the run that comes of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from dataclasses import field, replace
+from pathlib import Path
+
+import numpy as np
+
+from ltlc.base.diagnostics import Diagnostic
+from ltlc.dataclass import dataclass
+from ltlc.inputs.recordings import Block, Recording
+from ltlc.inputs.recordings.blocks import ROWS, Places, Samples, packed
+from ltlc.inputs.recordings.reading import ReadOptions
+from ltlc.inputs.recordings.rows import Column
+from ltlc.monitoring.guarding.arrangement import Arrangement
+from ltlc.monitoring.guarding.followed import Followed
+from ltlc.monitoring.guarding.report import GuardReport
+from ltlc.runtime import sampling
+from ltlc.runtime.guarding import Deed, Guard, Message, Values
+from ltlc.runtime.session import Plan
+from ltlc.semantics.arenas import Arena, Region
+from ltlc.semantics.durations import Nanoseconds
+from ltlc.specification.atoms import Atom
+from ltlc.specification.expressions import Field, Signal
+from ltlc.specification.fallbacks import value_in
+from ltlc.specification.guards import Fallback
+from ltlc.specification.guards import Guard as Stated
+from ltlc.specification.specification import Specification
+
+Open = Callable[[Path, Mapping[str, Signal], ReadOptions], Recording]
+"""Opens a recording, of which these signals are wanted."""
+
+MakePlan = Callable[[Collection[str]], Plan]
+"""The plan of a run in which samples of these signals come in themselves."""
+
+
+@dataclass(frozen=True)
+class Solved:
+    """Guards that share properties: what they were solved on, where they may rest, and their conditions."""
+
+    guards: tuple[Stated, ...]
+    arena: Arena
+    region: Region
+    conditions: Mapping[str, Atom]
+
+
+@dataclass(frozen=True)
+class Guarding:
+    """The guards of `specification`, solved."""
+
+    specification: Specification
+    solved: Sequence[Solved]
+
+    def through(
+        self, plan: MakePlan, open_: Open, path: Path, signals: Mapping[str, Signal], reading: ReadOptions
+    ) -> GuardedRecording:
+        """What they let through of the recording at `path`, of which `signals` are wanted; `plan` is of those it has.
+
+        Raises RecordingError.
+        """
+        outs = {guard.out: guard for guard in self.specification.guards}
+        sent = {name: signal for name, signal in signals.items() if _topic(signal) in outs}
+        asked = {name: _asked(outs[_topic(signal)], signal) for name, signal in sent.items()}
+        others = {name: signal for name, signal in signals.items() if name not in sent}
+        twins = {twin.name: twin for twin in asked.values()}
+        recording = open_(path, {**others, **twins}, reading)
+        if twins.keys().isdisjoint(recording.columns):
+            unguarded = open_(path, {**others, **sent}, reading)
+            if not sent.keys().isdisjoint(unguarded.columns):
+                own = {name: name for name in sent}
+                return GuardedRecording(self, plan, unguarded, signals, own, is_unguarded=True)
+        return GuardedRecording(self, plan, recording, signals, {twin.name: name for name, twin in asked.items()})
+
+
+def _topic(signal: Signal) -> str:
+    """The topic that `signal` is a field of; empty for one that is computed."""
+    return signal.definition.topic if isinstance(signal.definition, Field) else ""
+
+
+def _asked(guard: Stated, signal: Signal) -> Signal:
+    """What the commands of `guard` have where what it lets through has `signal`."""
+    assert isinstance(signal.definition, Field)
+    twin = replace(signal.definition, topic=guard.raw)
+    declared = (each for each in guard.asked if isinstance(each.definition, Field) and each.definition == twin)
+    column = "/".join([guard.raw, *map(str, twin.path)])
+    return next(declared, replace(signal, name=column, definition=twin))
+
+
+@dataclass
+class GuardedRecording:
+    """The run that left guards; `commands` has the names that these are read by, each with that of what is let through.
+
+    It `is_unguarded` if the recording has no commands, and what was recorded behind the guard was taken for them. What
+    the guards did are the `deeds`, in the order of time; the `first` row has this time.
+    """
+
+    guarding: Guarding
+    plan: MakePlan
+    recording: Recording
+    signals: Mapping[str, Signal]
+    commands: Mapping[str, str]
+    is_unguarded: bool = False
+    deeds: list[Deed] = field(default_factory=list)
+    first: Nanoseconds | None = None
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """See `Recording`."""
+        found = self.recording.columns
+        own = [name for name in found if name not in self.commands or name in self.signals]
+        return tuple(dict.fromkeys([*own, *(let for name, let in self.commands.items() if name in found)]))
+
+    @property
+    def definitions(self) -> Mapping[str, str]:
+        """See `Recording`."""
+        return self.recording.definitions
+
+    @property
+    def beginning(self) -> Nanoseconds | None:
+        """See `Recording`."""
+        return self.recording.beginning
+
+    def absence(self, name: str) -> str:
+        """See `Recording`."""
+        return self.recording.absence(self._read_by(name))
+
+    def remedy(self, name: str) -> str:
+        """See `Recording`."""
+        return self.recording.remedy(self._read_by(name))
+
+    def _read_by(self, name: str) -> str:
+        return next((command for command, let in self.commands.items() if let == name), name)
+
+    def report(self, since: Nanoseconds | None, until: Nanoseconds | None) -> GuardReport:
+        """What the guards did from the time `since` on, up to and including `until`; None is no limit."""
+        deeds = [
+            deed
+            for deed in self.deeds
+            if (since is None or deed.time >= since) and (until is None or deed.time <= until)
+        ]
+        return GuardReport(self.guarding.specification.guards, deeds, self.is_unguarded)
+
+    def remarks(self) -> list[Diagnostic]:
+        """See `Recording`."""
+        return self.recording.remarks()
+
+    def blocks(self) -> Iterator[Block]:
+        """See `Recording`."""
+        plan = self.plan(self.columns)
+        run = GuardedRun(self.guarding, self.signals, self.commands, plan, is_unguarded=self.is_unguarded)
+        self.deeds = run.deeds
+        for block in self.recording.blocks():
+            if self.first is None and len(block.times):
+                self.first = int(block.times[0])
+            for time, names, values, topics in block.rows({*self.recording.columns}):
+                run.row(time, dict(zip(names, values, strict=True)), topics)
+                if len(run.taken) >= ROWS:
+                    yield run.block()
+            if len(block.times):
+                run.act(int(block.times[-1]))
+            yield run.block()
+
+
+@dataclass(frozen=True, slots=True)
+class Event:
+    """A message of a guarded run; `values` are its samples."""
+
+    time: Nanoseconds
+    topic: str
+    values: Values
+
+
+class GuardedRun:
+    """Guards along one run; `taken` are the messages that came on other topics, or left a guard.
+
+    In the samples that come, those of commands go by the names in `commands`, each with that of what is let through.
+    """
+
+    def __init__(
+        self,
+        guarding: Guarding,
+        signals: Mapping[str, Signal],
+        commands: Mapping[str, str],
+        plan: Plan,
+        *,
+        is_unguarded: bool = False,
+    ) -> None:
+        self.taken: list[Event] = []
+        self.deeds: list[Deed] = []
+        self._signals, self._commands = signals, commands
+        specification = guarding.specification
+        self._lead = specification.lead
+        self._raws = {guard.raw: guard.out for guard in specification.guards}
+        self._outs = {guard.out for guard in specification.guards}
+        if is_unguarded:
+            self._raws = {out: out for out in self._outs}
+        readings = [signal for signal in plan.signals if isinstance(signal, sampling.Reading)]
+        self._topics = {signal.name: signal.topic for signal in readings}
+        self._columns = {r.name: Column(signals[r.name].type, signals[r.name].numbers) for r in readings}
+        properties = {each.label: each for each in specification.properties}
+        self._arranged = [
+            (some, Arrangement(some.arena, some.region, some.conditions, properties, plan)) for some in guarding.solved
+        ]
+        self._guards: list[tuple[Solved, Guard]] = []
+
+    def row(self, time: Nanoseconds, samples: Values, topics: Sequence[str]) -> None:
+        """What came in at once: messages on other topics first, then commands."""
+        messages: dict[str, dict[str, sampling.Value]] = {}
+        commands: dict[str, dict[str, sampling.Value]] = {}
+        for name, value in samples.items():
+            if name in self._commands:
+                let_through = self._commands[name]
+                commands.setdefault(self._topics[let_through], {})[let_through] = value
+            if name in self._topics and self._topics[name] not in self._outs:
+                messages.setdefault(self._topics[name], {})[name] = value
+        for topic in topics:
+            if topic in self._raws:
+                commands.setdefault(self._raws[topic], {})
+            if topic not in self._outs:
+                messages.setdefault(topic, {})
+        self.act(time)
+        for topic, values in messages.items():
+            self._hear(Event(time, topic, values))
+        for out, values in commands.items():
+            self._command(time, out, values)
+
+    def act(self, time: Nanoseconds) -> None:
+        """Do all that is due up to and including `time`, in its order."""
+        while (due := min((d for _, g in self._guards if (d := g.due()) is not None), default=None)) is not None:
+            if due > time:
+                break
+            for number, (_, guard) in enumerate(self._guards):
+                if guard.due() == due:
+                    self._done(number, guard.act(due))
+
+    def _begin(self, time: Nanoseconds) -> None:
+        """The session begins with the first message."""
+        for some, arrangement in () if self._guards else self._arranged:
+            messages = [
+                _message(fallback, guard.out, self._signals, self._topics)
+                for guard in some.guards
+                for fallback in guard.fallbacks
+            ]
+            self._guards.append((some, Guard(Followed(arrangement, time), some.arena.outs, messages, self._lead)))
+
+    def _hear(self, event: Event, sender: int | None = None) -> None:
+        """A message came, or left a guard: the others hear it."""
+        self._begin(event.time)
+        self.taken.append(event)
+        for number, (_, guard) in enumerate(self._guards):
+            if number != sender:
+                self._done(number, guard.hear(event.time, event.topic, event.values))
+
+    def _command(self, time: Nanoseconds, out: str, values: Values) -> None:
+        self._begin(time)
+        for number, (some, guard) in enumerate(self._guards):
+            if out in some.arena.outs:
+                self._done(number, [guard.command(time, out, values)])
+
+    def _done(self, number: int, deeds: Sequence[Deed]) -> None:
+        for deed in deeds:
+            self.deeds.append(deed)
+            if deed.values is not None:
+                self._hear(Event(deed.time, deed.outs[0], deed.values), number)
+
+    def block(self) -> Block:
+        """The messages that were taken since the last one."""
+        events, self.taken = self.taken, []
+        times = np.array([event.time for event in events], np.int64)
+        samples = {name: self._column(name, column, events) for name, column in self._columns.items()}
+        topics = dict.fromkeys(event.topic for event in events)
+        return Block(times, samples, {topic: _rows(event.topic == topic for event in events) for topic in topics})
+
+    @staticmethod
+    def _column(name: str, column: Column, events: Sequence[Event]) -> Samples:
+        rows = _rows(name in event.values for event in events)
+        return Samples(rows, packed([events[row].values[name] for row in rows.tolist()], column))
+
+
+def _rows(having: Iterator[bool]) -> Places:
+    return np.flatnonzero(np.fromiter(having, np.bool_)).astype(np.int64)
+
+
+def _message(fallback: Fallback, out: str, signals: Mapping[str, Signal], topics: Mapping[str, str]) -> Message:
+    """`fallback` as it leaves on `out`: its samples of the signals that are read there."""
+    values: dict[str, sampling.Value] = {}
+    for name, topic in topics.items():
+        if topic == out and (constant := value_in(fallback, signals[name])) is not None:
+            values[name] = constant.value
+    return Message(fallback.name, out, values)

@@ -1,0 +1,192 @@
+"""`ltlc run --guard`: what guards let through of a recording, and that no property is violated by what leaves them."""
+
+from __future__ import annotations
+
+import json
+import random
+from pathlib import Path
+
+import pytest
+from effort import share_of
+
+from benchmarks.guarded import CMD, EXAMPLES, SCAN, SCANS, SPEEDS, Driven, Example
+from ltlc.cli import main
+from ltlc.monitoring.guarding.followed import Followed
+
+NEAR = EXAMPLES["near"].text.replace("message stop {linear.x: 0}", "message stop {}")
+ASKED = "decl asked /cmd_vel_raw geometry_msgs/Twist.linear.x\n"
+
+Row = dict[str, object]
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_what_leaves_a_guard_violates_no_property(name: str) -> None:
+    driven = Driven(EXAMPLES[name])
+    for seed in range(share_of(8)):
+        found = driven.run(random.Random(seed), 60)
+        assert not found["violated"], seed
+        assert not found["lost"], seed
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_a_guard_that_minds_nothing_lets_violations_through(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Followed, "rests", True)
+    monkeypatch.setattr(Followed, "violated", None)
+    driven = Driven(EXAMPLES[name])
+    assert any(driven.run(random.Random(seed), 60)["violated"] for seed in range(20))
+
+
+def guarded(folder: Path, text: str, rows: list[Row], *options: str) -> tuple[int, dict[str, object]]:
+    """The exit code and the JSON of `ltlc run --guard` for a table of `rows`."""
+    (folder / "p.txt").write_text(text, encoding="utf-8")
+    (folder / "r.jsonl").write_text("".join(f"{json.dumps(row)}\n" for row in rows), encoding="utf-8")
+    output = folder / "found.json"
+    with pytest.MonkeyPatch.context() as patch, output.open("w", encoding="utf-8") as stream:
+        patch.setattr("sys.stdout", stream)
+        code = main(["run", "--guard", "--format", "json", *options, str(folder / "p.txt"), str(folder / "r.jsonl")])
+    return code, json.loads(output.read_text(encoding="utf-8") or "{}")
+
+
+def deeds(document: dict[str, object], guard: int = 0) -> list[tuple[float, str, object, object, str]]:
+    """What a guard did: when, what, with which command, what left, and why."""
+    (found,) = [document["guard"][guard]]  # type: ignore[index]
+    kinds = ("passed", "changed", "held_back", "sent", "lost")
+    return sorted(
+        (
+            each["time"],
+            kind,
+            each["command"] and each["command"]["speed"],
+            each["sent"] and each["sent"]["speed"],
+            each["reason"],
+        )
+        for kind in kinds
+        for each in found[kind]
+    )
+
+
+def test_commands_pass_are_changed_held_back_and_sent_each_with_its_reason(tmp_path: Path) -> None:
+    rows: list[Row] = [
+        {"time": 0, "asked": 1},
+        {"time": 1, "scan": [2, 3]},
+        {"time": 2, "asked": 1},
+        {"time": 3, "scan": [0.3, 3]},
+        {"time": 3.05, "asked": 1},
+        {"time": 4, "scan": [2, 3]},
+        {"time": 5, "asked": 1},
+        {"time": 6, "scan": [0.4, 3]},
+        {"time": 7, "scan": [0.4, 3]},
+    ]
+    code, document = guarded(tmp_path, ASKED + NEAR, rows)
+    assert code == 0
+    assert deeds(document) == [
+        (0, "held_back", 1, None, "a topic has not spoken yet"),
+        (2, "passed", 1, 1, ""),
+        (3.05, "changed", 1, 0, "it would violate `q`"),
+        (5, "passed", 1, 1, ""),
+        (6.09, "sent", None, 0, "ahead of a deadline of `p`"),
+    ]
+    assert {each["verdict"] for each in document["properties"]} == {"presumably_satisfied"}  # type: ignore[attr-defined]
+
+
+def test_the_controller_has_its_time_to_do_it_by_itself(tmp_path: Path) -> None:
+    rows: list[Row] = [
+        {"time": 1, "scan": [2]},
+        {"time": 2, "asked": 1},
+        {"time": 3, "scan": [0.3]},
+        {"time": 3.08, "asked": 0.1},
+    ]
+    _, document = guarded(tmp_path, ASKED + NEAR, [*rows, {"time": 4, "scan": [0.3]}])
+    assert [(kind, sent) for _, kind, _, sent, _ in deeds(document)] == [("passed", 1), ("passed", 0.1)]
+
+
+def test_what_was_recorded_without_a_guard_is_taken_for_its_commands(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    rows: list[Row] = [{"time": 1, "scan": [0.3]}, {"time": 2, "speed": 1}]
+    code, document = guarded(tmp_path, NEAR, rows)
+    assert (code, document["guard"][0]["commands_from"]) == (0, "/cmd_vel")  # type: ignore[index]
+    assert [(kind, sent) for _, kind, _, sent, _ in deeds(document)] == [("changed", 0)]
+    assert main(["run", "--guard", str(tmp_path / "p.txt"), str(tmp_path / "r.jsonl")]) == 0
+    shown = capsys.readouterr().out
+    assert "guard of /cmd_vel: 0 passed, 1 changed, 0 held back, 0 sent by itself" in shown
+    assert "/cmd_vel_raw was not recorded: what was recorded on /cmd_vel is taken for its commands" in shown
+    assert "  +1 s  changed speed = 1.0 to `stop`: it would violate `q`" in shown
+
+
+def test_a_command_without_a_value_does_not_pass_nor_does_any_while_a_sensor_has_none(tmp_path: Path) -> None:
+    text = ASKED + CMD + "decl gap /gap std_msgs/Float64.data\np: never (new speed and speed > gap)"
+    rows: list[Row] = [
+        {"time": 1, "gap": 2},
+        {"time": 2, "asked": "NaN"},
+        {"time": 3, "asked": 1},
+        {"time": 4, "gap": "NaN"},
+        {"time": 5, "asked": 1},
+        {"time": 6, "gap": 2},
+        {"time": 7, "asked": 1},
+    ]
+    _, document = guarded(tmp_path, text, rows)
+    assert [(time, kind, why) for time, kind, _, _, why in deeds(document)] == [
+        (2, "changed", "it has no value"),
+        (3, "passed", ""),
+        (5, "changed", "a value is missing"),
+        (7, "passed", ""),
+    ]
+
+
+def test_a_broken_assumption_loses_and_from_then_on_the_first_fallback_is_sent(tmp_path: Path) -> None:
+    text = ASKED + NEAR + "\nassume a: always min(scan) > 0.1"
+    rows: list[Row] = [
+        {"time": 1, "scan": [2]},
+        {"time": 2, "asked": 1},
+        {"time": 3, "scan": [0.05]},
+        {"time": 4, "asked": 0.1},
+    ]
+    code, document = guarded(tmp_path, text, rows)
+    assert code == 1
+    lost = "the assumption `a` is violated"
+    assert deeds(document)[1:] == [(3, "lost", None, None, lost), (4, "changed", 0.1, 0, f"the guard has lost: {lost}")]
+
+
+def test_two_guards_hear_what_the_other_one_sends(tmp_path: Path) -> None:
+    text = ASKED + "decl wanted /grip_raw std_msgs/Float64.data\n" + EXAMPLES["two guards"].text
+    rows: list[Row] = [{"time": 1, "asked": 0}, {"time": 2, "wanted": -1}, {"time": 3, "asked": 1}]
+    _, document = guarded(tmp_path, text, rows)
+    begins, keeps = "not all properties have begun", "it would violate `p`"
+    assert [(kind, why) for _, kind, _, _, why in deeds(document)] == [("changed", begins), ("changed", keeps)]
+    assert [each["sent"] for each in document["guard"][1]["passed"]] == [{"grip": -1}]  # type: ignore[index]
+
+
+@pytest.mark.parametrize(
+    ("text", "options", "said"),
+    [
+        ("decl speed /cmd_vel geometry_msgs/Twist.linear.x\nnever speed > 1", (), "has no guard"),
+        (NEAR, ("--evidence", "e.txt"), "cannot be combined with --evidence"),
+        (CMD + "p: after speed > 1, always speed > @{speed, opening}", (), "reads a value at an opening"),
+        (
+            "guard /raw to /u else m\nmessage m {}\ndecl u /u std_msgs/Float64MultiArray.data\nnever max(u) > 1",
+            (),
+            "reads the array `u`",
+        ),
+    ],
+)
+def test_what_cannot_be_tried_is_said(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], text: str, options: tuple[str, ...], said: str
+) -> None:
+    code, _ = guarded(tmp_path, text, [{"time": 0, "speed": 1}], *options)
+    assert code == 2
+    assert said in capsys.readouterr().err
+
+
+def test_only_what_a_guard_did_between_two_times_is_reported(tmp_path: Path) -> None:
+    rows: list[Row] = [{"time": 1, "scan": [2]}]
+    rows += [{"time": n, "asked": 1} for n in range(2, 8)]
+    _, document = guarded(tmp_path, ASKED + NEAR, rows, "--from", "3", "--until", "5")
+    assert [time for time, *_ in deeds(document)] == [3, 4, 5]
+
+
+def test_the_examples_read_what_they_declare() -> None:
+    """An example whose signals no property reads would be judged on nothing."""
+    for name, example in EXAMPLES.items():
+        driven = Driven(example)
+        assert {n for of in example.values.values() for n in of} == driven.signals.keys(), name
+    assert Driven(Example(CMD + SCAN + "never speed > min(scan)", SPEEDS | SCANS)).labels == ["line 5"]
