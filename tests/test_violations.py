@@ -15,7 +15,7 @@ from ltlc.automata import Budget, Exceeded
 from ltlc.backends.python.load import load_plan
 from ltlc.base.limits import Limit
 from ltlc.monitoring.judging.run import Judge, RunReport
-from ltlc.monitoring.later import MOST, all_violations
+from ltlc.monitoring.later import MOST, all_violations, violation_at
 from ltlc.runtime.rows import ByRows
 from ltlc.runtime.session import Plan, Session
 from ltlc.semantics import instants as semantics
@@ -78,6 +78,8 @@ def found_in(report: RunReport) -> Found:
     [track] = report.session.tracks
     found = all_violations(track)
     assert found is not None
+    first = track.decided_at if track.verdict is Verdict.VIOLATED else None
+    assert [each.moment for each in found[:1]] == ([] if first is None else [violation_at(first).moment])
     return [(each.moment.time, each.until) for each in found]
 
 
