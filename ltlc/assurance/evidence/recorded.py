@@ -661,9 +661,9 @@ class Values:
         def count(*values: Any) -> float:
             arrays, others = values[: len(axes)], [Series(column([each])) for each in values[len(axes) :]]
             sizes = [min(len(a) for a, axis in zip(arrays, axes, strict=True) if axis == n) for n in range(len(groups))]
-            if any(is_nan(each.now)[0] for each in others) or (len(sizes) > 1 and math.prod(sizes) > MOST_COMBINATIONS):
+            if len(sizes) > 1 and math.prod(sizes) > MOST_COMBINATIONS:
                 return math.nan
-            shapes = np.where(np.eye(len(sizes), dtype=bool), -1, 1).tolist()
+            shapes = np.where(np.eye(len(sizes), dtype=bool), -1, 1)
             elements = [Series(a[: sizes[n]].reshape(shapes[n])) for a, n in zip(arrays, axes, strict=True)]
             found = self.value(predicate, [*elements, *others])
             return float(np.count_nonzero(np.broadcast_to(found.now & ~found.wrong, sizes)))
