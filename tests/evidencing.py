@@ -128,6 +128,8 @@ always max(hypot(x, y), sign(x)) < 3
 never max(i, 0.5) > 9007199254740992
 always count(not scan > 1 and scan < 4) < 3
 always x - @{x, when not b or y > 0.4} < 2
+never any(nearest(tx, scan) < 1)
+never any(abs(tx - median(scan)) > 3)
 """.strip().splitlines()
 """All forms that evidence covers, except those of time, whose atoms are these, and the next ones."""
 

@@ -29,7 +29,7 @@ TIMES = st.integers(0, 10**19 - 1)
 HEX = st.integers(0, 16**64 - 1).map("{:064x}".format)
 FIELDS = st.fixed_dictionaries({"topic": NAMES, "type": NAMES, "path": st.lists(NAMES | st.integers(0, 9), max_size=3)})
 SIDES = st.floats(allow_nan=False, allow_infinity=False) | st.integers() | st.booleans() | NAMES | FIELDS
-ATOMS = st.builds(StatedAtom, NAMES, st.fixed_dictionaries({"op": st.just("<"), "left": SIDES, "right": SIDES}))
+ATOMS = st.builds(StatedAtom, NAMES, st.fixed_dictionaries({"call": st.just("<"), "of": st.lists(SIDES, max_size=3)}))
 
 
 @st.composite
@@ -70,7 +70,7 @@ EXAMPLE = printed(
             Claim(
                 "slow",
                 "never v > 2",
-                (StatedAtom("v > 2", {"op": ">", "left": 1.0, "right": 2.0}),),
+                (StatedAtom("v > 2", {"call": ">", "of": [1.0, 2.0]}),),
                 5,
                 (Line(5, ()), Line(9, (0,))),
                 9,
@@ -107,15 +107,15 @@ def test_a_byte_that_is_changed_or_missing_is_noticed(place: int, by: str) -> No
         ("+4 a0", "+4 a0 a0"),
         ("at 5", "+5"),
         ("+4 a0", "at 9 a0"),
-        ('"left":1.0', '"left": 1.0'),
-        ('"left":1.0', '"left":NaN'),
-        ('"left":1.0', '"left":1e400'),
-        ('"left":1.0', '"left":1.0,"left":1.0'),
+        ('"of":[1.0', '"of": [1.0'),
+        ('"of":[1.0', '"of":[NaN'),
+        ('"of":[1.0', '"of":[1e400'),
+        ('"of":[1.0,2.0]', '"of":[1.0,2.0],"of":[1.0,2.0]'),
         ("verdict violated 9", "verdict violated 9 "),
         ("verdict violated 9", "verdict broken 9"),
         ("until 9\n", ""),
         ("recording run.mcap 300 sha256 " + "c" * 64 + "\n", ""),
-        ("ltlc-evidence 1", "ltlc-evidence 2"),
+        ("ltlc-evidence 2", "ltlc-evidence 1"),
         ("it counts", "it counts\nmore"),
     ],
 )

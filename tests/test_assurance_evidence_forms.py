@@ -165,7 +165,8 @@ def test_a_letter_says_which_scopes_are_open_and_the_document_from_which_step_on
     document = evidence_of(OPENED, bag)
     claim = only(document)
     assert claim.scopes == (StatedScope(1, ((4, None),)),)
-    assert claim.atoms[1].condition["right"] == {"opening": claim.atoms[1].condition["left"], "scope": 1}
+    x = {"topic": "/x", "type": "std_msgs/msg/Float64", "path": ["data"]}
+    assert claim.atoms[1].condition == {"call": "<=", "of": [x, {"opening": x, "scope": 1}]}
     assert (claim.verdict, claim.decided) == (Verdict.VIOLATED, BEGINNING + 3 * SECOND)
     assert claim.letters == (
         Line(BEGINNING, (1,)),
@@ -222,6 +223,17 @@ def test_a_scope_that_opens_later_with_letters_to_match_is_refused_by_the_judge(
     assert refusal == "judge: it does not say which scopes are open"
 
 
+def test_values_at_openings_are_taken_after_a_decision_too_at_the_time_of_which_there_are_more_steps(
+    tmp_path: Path,
+) -> None:
+    text = specification(["(after b, always x >= @{x, opening}) and x < @{x, opening} + 3"])
+    last = [(BEGINNING + SECOND, "/x", make("std_msgs/msg/Float64", data=value)) for value in (9.0, 0.5)]
+    bag = bag_of(tmp_path, rows("/b", False), rows("/x", 1.0), last)
+    document = evidence_of(text, bag)
+    assert (only(document).verdict, only(document).decided) == (Verdict.VIOLATED, BEGINNING + SECOND)
+    assert refusals(document, text, bag) == []
+
+
 @pytest.mark.parametrize("number", [0, 2, 7])
 def test_another_scope_is_refused(number: int, tmp_path: Path) -> None:
     bag = bag_of(tmp_path, rows("/x", 1.0, 2.0), rows("/b", True, True))
@@ -262,7 +274,7 @@ def test_each_message_opens_an_instance_and_the_first_that_is_violated_decides(t
     document = evidence_of(ANSWERED, bag)
     claim = only(document)
     assert (claim.opens, claim.atoms[0].name) == (0, "new b (this one)")
-    assert claim.atoms[0].condition == {"op": "true", "left": {"new": ["/b"]}}
+    assert claim.atoms[0].condition == {"new": ["/b"]}
     late = BEGINNING + 4 * SECOND + 1
     assert (claim.verdict, claim.until, claim.decided) == (Verdict.VIOLATED, late, late)
     assert refusals(document, ANSWERED, bag) == []
@@ -335,6 +347,19 @@ def test_each_id_has_letters_and_a_verdict_and_all_have_that_of_the_worst(tmp_pa
     assert (claim.verdict, claim.decided, claim.letters) == (Verdict.VIOLATED, late, ())
     assert refusals(document, FOLLOWED, bag) == []
     assert parsed(printed(document)) == document
+
+
+def test_a_slice_that_is_decided_has_the_values_of_what_comes_at_the_same_time(tmp_path: Path) -> None:
+    text = specification(["each a of i: eventually x > 1 and new i"])
+    last = [(BEGINNING + SECOND, "/x", make("std_msgs/msg/Float64", data=0.0))]
+    bag = bag_of(tmp_path, rows("/x", 3.0), [(BEGINNING + SECOND, "/i", make("std_msgs/msg/Int64", data=7))], last)
+    document = evidence_of(text, bag)
+    [slice_] = only(document).slices
+    assert (slice_.verdict, slice_.letters) == (
+        Verdict.SATISFIED,
+        (Line(BEGINNING + SECOND, (0, 1)), Line(BEGINNING + SECOND, ())),
+    )
+    assert refusals(document, text, bag) == []
 
 
 def moved(slices: tuple[StatedSlice, ...], number: int, **changes: Any) -> tuple[StatedSlice, ...]:

@@ -10,7 +10,7 @@ import pytest
 from evidencing import random_rows, specification, write_bag
 
 from ltlc.assurance.evidence import recorded
-from ltlc.assurance.evidence.document import HEADER, Document
+from ltlc.assurance.evidence.document import END, HEADER, Document, digest
 from ltlc.assurance.evidence.parsing import parsed_all
 from ltlc.cli import main
 
@@ -58,6 +58,20 @@ def test_a_campaign_that_was_stopped_goes_on_to_the_same_bytes(
     campaign("--results", "all.parquet")
     assert Path("all.evidence").read_bytes() == whole
     assert "2 judged before" in capsys.readouterr().out
+
+
+def test_evidence_that_was_changed_in_between_is_made_anew_though_its_digest_is_right(drives: Path) -> None:
+    campaign("--results", "all.parquet")
+    whole = Path("all.evidence").read_text()
+    first, second = whole.split(END, 1)
+    forged = first.replace("verdict presumably_satisfied", "verdict satisfied").replace(
+        "verdict violated", "verdict satisfied"
+    )
+    assert forged != first
+    Path("all.evidence").write_text(f"{forged}{END}{digest(forged)}{second[64:]}")
+    assert len(bundle()) == 3
+    campaign("--results", "all.parquet")
+    assert Path("all.evidence").read_text() == whole
 
 
 def test_nothing_is_written_where_nothing_has_changed(drives: Path) -> None:

@@ -144,7 +144,7 @@ def test_without_the_recording_the_letters_are_not_checked(drive: Made) -> None:
     [
         ("verdict violated", "verdict satisfied", "  judge: REFUSED: the verdict is violated"),
         ("+3000000000 a0\n", "+2000000000\n+1000000000 a0\n", "  recorded: REFUSED"),
-        ('"right":2.0', '"right":2.25', "  specification: REFUSED: `v > 2` is"),
+        ('["data"]},2.0]', '["data"]},2.25]', "  specification: REFUSED: `v > 2` is"),
         ("text never v > 2", "text never v > 3", "  specification: REFUSED: the specification says `never v > 2`"),
         ("never v > 2\n", "never v > 2\nverifies X-1\n", "  specification: REFUSED: the specification states another"),
         ("atom v > 2\n", "atom v > 9\n", "  judge: REFUSED: 'v > 2' is missing"),
@@ -195,7 +195,13 @@ def test_a_recording_of_which_nothing_is_claimed_is_looked_at_all_the_same(
     arguments = ["--evidence", str(drive.evidence), *([str(drive.recording)] if given else []), "-q"]
     found, lines, _ = drive.certify(str(drive.certificates), *arguments)
     assert found == code
-    assert any(line.startswith("  REFUSED: drive.mcap is another file") for line in lines) == forge
+    assert (
+        any(
+            line.startswith("  REFUSED: no recording has the files, sizes and SHA-256 that are written: drive.mcap")
+            for line in lines
+        )
+        == forge
+    )
 
 
 def test_a_recording_without_evidence_is_named_and_not_passed_over(drive: Made) -> None:
@@ -243,7 +249,7 @@ def test_letters_of_which_only_the_digest_is_stated_are_judged_as_they_are_in_th
     [
         ([], "give CERTIFICATE, or evidence with --evidence"),
         (["--evidence", "none.evidence"], "none.evidence cannot be read"),
-        (["--evidence", "props.txt"], "props.txt:1: expected `ltlc-evidence 1`"),
+        (["--evidence", "props.txt"], "props.txt:1: expected `ltlc-evidence 2`"),
         (["--evidence", "drive.evidence", "missing/drive.mcap"], "missing/drive.mcap"),
     ],
 )

@@ -285,8 +285,7 @@ class JudgedTrack(RecordedTrack):
         if later is not None:
             self.is_settled &= later.is_settled
         if self.letters is not None:
-            given = (*self.property.given(values), *self.kept()) if self.steps > steps else None
-            self.letters.step(time, given)
+            self.letters.step(time, self.property.given(values) if self.steps > steps else None)
         return previous
 
     def hold(self, time: int) -> list[Any]:

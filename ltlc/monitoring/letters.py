@@ -13,6 +13,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from ltlc.assurance.evidence.conditions import numbered_scopes
 from ltlc.assurance.evidence.document import Line, StatedScope, Summed
 from ltlc.backends.python.load import load_conditions
 from ltlc.monitoring.opened import Opened
@@ -20,6 +21,7 @@ from ltlc.runtime.sampling import Value
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.properties import predicates
 from ltlc.semantics.timed_atoms import news_that_counts
+from ltlc.specification.expressions import Current
 from ltlc.specification.specification import PropertySpecification
 
 MOST_BYTES = 600
@@ -43,6 +45,13 @@ class Letters:
         self._steps = 0
         """How many were taken by rows."""
         self._opened = Opened(of) if of.openings() else None
+        inputs, scopes = of.inputs(), [*numbered_scopes(of)]
+        self._taken = [
+            (inputs.index(Current(opening.signal)), 1 << len(atoms) + scopes.index(clock))
+            for opening, clock in of.openings().items()
+        ]
+        """Of each value at an opening, its place among the inputs, and the bit of its scope."""
+        self._kept: list[Value] = [0.0] * len(self._taken)
         self.is_told = True
         self.is_settled = False
         self._pending: list[tuple[Nanoseconds, int]] = []
@@ -72,14 +81,21 @@ class Letters:
                 self._pending.append((time, bits))
 
     def step(self, time: Nanoseconds, values: Sequence[Value] | None) -> None:
-        """A step with these values of the inputs and at openings was taken by rows; None: it was none."""
+        """A step with these values of the inputs was taken by rows; None: it was none.
+
+        Values at openings are taken here: a monitor that has decided takes none, at whose time there can be more steps.
+        """
         if not self.is_told or self.is_settled:
             return
         if values is None:
             self._flush()
             return
         now, messages = 0, sum(self._messages.values())
-        for number, holds in enumerate(self._holds(*values)):
+        before = 0 if self._opened is None else self._opened.bits
+        for number, (place, bit) in enumerate(self._taken):
+            if not before & bit:
+                self._kept[number] = values[place]
+        for number, holds in enumerate(self._holds(*values, *self._kept)):
             now |= holds << number
         if self._is_at_ticks:
             now &= ~messages

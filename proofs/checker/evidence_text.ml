@@ -127,7 +127,7 @@ let read_end s =
 
 (* The head of a document: the digest of the certificates that it names, and the names of the files of the recording. *)
 let read_head s =
-  if s.next <> Some "ltlc-evidence 1" then fail "this is no evidence";
+  if s.next <> Some "ltlc-evidence 2" then fail "this is no evidence";
   s.sum <- Sha256.start ();
   ignore (take s);
   ignore (need s "ltlc ");
@@ -142,6 +142,7 @@ let read_head s =
   let first = file (need s "recording ") in
   let files = first :: Stdlib.List.map file (all s "recording ") in
   ignore (Stdlib.List.map with_sha256 (all s "definition "));
+  ignore (all s "signal ");
   ignore (optional s "rate ");
   ignore (optional s "timeout ");
   if s.next = Some "stamp header" then ignore (take s);

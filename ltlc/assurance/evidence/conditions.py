@@ -33,6 +33,8 @@ from ltlc.semantics.timed_atoms import (
     timed_atoms,
 )
 from ltlc.specification import expressions as e
+from ltlc.specification.functions import Function
+from ltlc.specification.numbers import numbers_of
 from ltlc.specification.specification import Instances, PropertySpecification, Slicing, fields, topics_of
 from ltlc.specification.wire import PRIMITIVES, double_or_integer
 
@@ -79,9 +81,13 @@ def stated_atoms(of: PropertySpecification, encoding: Encoding = EPISODE) -> tup
     openings = {opening: scopes[clock] for opening, clock in of.openings().items()}
     writer, messages = _Writer(standing, openings), of.messages()
     return tuple(
-        StatedAtom(a.name, _message(a.condition) if a.name in messages else writer.condition(a.condition))
+        StatedAtom(a.name, _message(a.condition) if a.name in messages else _as_data(writer.condition(a.condition)))
         for a in of.atoms
     )
+
+
+def _as_data(said: Json) -> Data:
+    return said if isinstance(said, dict) else _call("and", said)
 
 
 def _check_slices(of: PropertySpecification, by: Slicing) -> None:
@@ -179,7 +185,7 @@ def _topics(of: PropertySpecification, signal: str) -> tuple[str, ...]:
 def _message(condition: e.Condition) -> dict[str, object]:
     match condition:
         case e.IsTrue(e.New(signal)):
-            return {"op": "true", "left": {"message": sorted(topics_of(signal))}}
+            return {"message": sorted(topics_of(signal))}
         case _:
             raise TypeError(f"not that a message comes: {condition}")
 
@@ -191,19 +197,24 @@ class _Writer:
     """
 
     def __init__(self, standing: Mapping[e.Current, _Standing], openings: Mapping[e.Opening, int]) -> None:
-        self._standing = standing
-        self._openings = openings
+        self.standing = standing
+        self.openings = openings
 
-    def condition(self, what: e.Condition) -> dict[str, object]:
+    def condition(self, what: e.Condition) -> Json:
         """A condition."""
         match what:
-            case e.Comparison(left, relation, right, margin):
-                said = {"op": relation.value, "left": self.expression(left), "right": self.expression(right)}
-                return said | {"margin": _number(margin)} if margin else said
+            case e.Comparison(left, e.Relation.EQUAL, right, margin) if margin:
+                apart = _call("gap", self.expression(left), self.expression(right))
+                return _call("<=", _call("abs", apart), _number(margin))
+            case e.Comparison(left, relation, right, margin) if margin:
+                moved = _call("+", self.expression(right), _number(margin))
+                return _call(relation.value, self._in_doubles(left), moved)
+            case e.Comparison(left, relation, right):
+                return _call(relation.value, self.expression(left), self.expression(right))
             case e.Same(left, right):
-                return {"op": "same", "left": self.expression(left), "right": self.expression(right)}
+                return _call("==", self.expression(left), self.expression(right))
             case e.IsTrue(operand):
-                return {"op": "true", "left": self.expression(operand)}
+                return self.expression(operand)
 
     def expression(self, of: e.Expression) -> Json:
         """An expression."""
@@ -223,25 +234,35 @@ class _Writer:
             case e.New(signal):
                 return {"new": sorted(topics_of(signal))}
             case e.Opening(signal):
-                return {"opening": self._latest(signal), "scope": self._openings[of]}
+                return {"opening": self._latest(signal), "scope": self.openings[of]}
             case e.Slice(array, start, stop):
-                return {"slice": [start, stop], "of": self.expression(array)}
-            case e.Element(array):
-                return {"element": self.expression(array)}
+                return _call("slice", self.expression(array), start, stop)
             case e.Negative(operand):
-                return {"call": "neg", "of": [self.expression(operand)]}
+                return _call("neg", self.expression(operand))
             case e.Arithmetic(operator, left, right):
-                return {"call": operator.value, "of": [self.expression(left), self.expression(right)]}
+                return _call(operator.value, self._in_doubles(left), self._in_doubles(right))
+            case e.Call(function, [array]) if of.array is not None:
+                return _call(_OF_ARRAYS.get(function, function.value), self.expression(array))
+            case e.Call(function, arguments) if numbers_of(of).is_wide:
+                return _call(function.value, *map(self.expression, arguments))
             case e.Call(function, arguments):
-                return {"call": function.value, "of": [self.expression(each) for each in arguments]}
-            case e.Count(predicate, conditions, over):
-                said = {"count": self._predicate(predicate, dict(conditions))}
-                lists = [[self.expression(each.array) for each in elements] for elements in over]
-                return said | {"over": lists} if over else said
+                return _call(function.value, *map(self._in_doubles, arguments))
+            case e.Count(predicate, conditions):
+                inside = _OfElements(self, of)
+                said = inside.predicate(predicate, dict(conditions))
+                lists = [[self.expression(each.array) for each in elements] for elements in of.lists]
+                return {"count": said, "over": lists, "beside": [self.expression(each) for each in inside.beside]}
             case e.When(predicate, conditions):
-                return {"predicate": self._predicate(predicate, dict(conditions))}
+                return self.predicate(predicate, dict(conditions))
+            case e.Element():
+                raise TypeError("an element outside of a count")
             case _:
                 assert_never(of)
+
+    def _in_doubles(self, of: e.Expression) -> Json:
+        """An expression that is no integer which could be no double."""
+        said = self.expression(of)
+        return _call("double", said) if numbers_of(of).is_wide and not isinstance(of, e.Number) else said
 
     def definition(self, signal: e.Signal) -> dict[str, object]:
         """What a signal is: a field, or an expression, whose latest value it is."""
@@ -252,7 +273,7 @@ class _Writer:
         return found
 
     def _current(self, wanted: e.Current, signal: e.Signal) -> Json:
-        if (standing := self._standing.get(wanted)) is not None:
+        if (standing := self.standing.get(wanted)) is not None:
             news = {"news": sorted(standing.topics)} if standing.topics else {}
             return {"instead": _instead(standing.value), **news, "of": self._latest(signal)}
         if signal.otherwise is not None:
@@ -271,28 +292,50 @@ class _Writer:
             return {"of": _field(signal.definition)}
         sampled: dict[str, object] = {"sampled": self.expression(signal.definition)}
         if signal.when is not None:
-            conditions = dict(signal.when.conditions)
-            sampled["when"] = self._predicate(signal.when.predicate, conditions)
-            others = [conditions[name] for name in conditions.keys() - {*ltl.atoms(signal.when.predicate)}]
-            measured = [side for each in signal.when.conditions for side in e.operands(each[1]) if each[1] in others]
-            if measured:
-                sampled["measured"] = [self.expression(side) for side in measured]
+            sampled["when"] = self.predicate(signal.when.predicate, dict(signal.when.conditions))
+            asked = ltl.atoms(signal.when.predicate)
+            others = (each for name, each in signal.when.conditions if name not in asked)
+            for side in (self.expression(side) for each in others for side in e.operands(each)):
+                sampled["when"] = _call("and", sampled["when"], _call("==", side, side))  # it has to be no NaN
         return {"of": sampled}
 
-    def _predicate(self, formula: ltl.Formula, conditions: Mapping[str, e.Condition]) -> Json:
+    def predicate(self, formula: ltl.Formula, conditions: Mapping[str, e.Condition]) -> Json:
+        """A state predicate over conditions by their names."""
         match formula:
             case ltl.Truth():
                 return True
             case ltl.Atom(name):
                 return self.condition(conditions[name])
             case ltl.Not(operand):
-                return {"not": self._predicate(operand, conditions)}
-            case ltl.And(left, right):
-                return {"and": [self._predicate(each, conditions) for each in (left, right)]}
-            case ltl.Or(left, right):
-                return {"or": [self._predicate(each, conditions) for each in (left, right)]}
+                return _call("not", self.predicate(operand, conditions))
+            case ltl.And(left, right) | ltl.Or(left, right):
+                name = "and" if isinstance(formula, ltl.And) else "or"
+                return _call(name, *(self.predicate(each, conditions) for each in (left, right)))
             case _:
                 raise TypeError(f"not a state predicate: {formula}")
+
+
+class _OfElements(_Writer):
+    """Writes the predicate of a count: of elements, by the numbers of their arrays, and of what is `beside` them."""
+
+    def __init__(self, outer: _Writer, of: e.Count) -> None:
+        super().__init__(outer.standing, outer.openings)
+        self._elements = [each for elements in of.lists for each in elements]
+        inside = {*e.subexpressions(of)}
+        self.beside = [each for each in of.singles if each in inside and any(True for _ in e.reads(each))]
+
+    def expression(self, of: e.Expression) -> Json:
+        """An expression."""
+        numbered = [*self._elements, *self.beside]
+        return {"element": numbered.index(of)} if of in numbered else super().expression(of)
+
+
+_OF_ARRAYS = {Function.MIN: "least", Function.MAX: "greatest"}
+"""Functions of one array that are called as a function of numbers is."""
+
+
+def _call(name: str, *of: Json) -> dict[str, object]:
+    return {"call": name, "of": list(of)}
 
 
 def _definition(signal: e.Signal) -> e.Expression:
@@ -307,9 +350,9 @@ def _instead(value: Instead) -> Json:
 
 
 def _number(value: float) -> Json:
-    """A number as JSON; one that JSON does not have, in words."""
+    """A number as JSON; one that JSON does not have, as text."""
     exact = double_or_integer(value) if isinstance(value, int) else value
-    return exact if math.isfinite(exact) else {"number": repr(exact)}
+    return exact if math.isfinite(exact) else _call("number", repr(exact))
 
 
 def _field(field: e.Field) -> dict[str, object]:

@@ -18,25 +18,18 @@ _BYTES = {
 
 
 def definition_text(name: str, types: MessageTypes) -> str:
-    """A line for the message `name` and each that is inside it, in the order of names: `NAME: TYPE FIELD, …`.
+    """The message `name` with the types of its fields, and theirs in it: `NAME(TYPE FIELD, TYPE FIELD)`.
 
     Primitives have the names of ROS 2, of several the first; lists end in `[]`, arrays of fixed length in `[N]`.
     """
-    found: dict[str, str] = {}
-    todo = [name]
-    while todo:
-        of = todo.pop()
-        if of in found or of not in types.messages:
-            continue
-        fields = types.messages[of].fields
-        lengths = {None: "", 0: "[]"}
-        said = (
-            f"{_BYTES.get(type_.base, type_.base)}{lengths.get(type_.length, f'[{type_.length}]')} {field}"
-            for field, type_ in fields.items()
-        )
-        found[of] = f"{of}: {', '.join(said)}\n"
-        todo += [type_.base for type_ in fields.values()]
-    return "".join(found[of] for of in sorted(found))
+    if name not in types.messages:
+        return _BYTES.get(name, name)
+    lengths = {None: "", 0: "[]"}
+    fields = (
+        f"{definition_text(of.base, types)}{lengths.get(of.length, f'[{of.length}]')} {field}"
+        for field, of in types.messages[name].fields.items()
+    )
+    return f"{name}({', '.join(fields)})"
 
 
 def digests(read: Iterable[tuple[str, MessageTypes]]) -> tuple[tuple[str, str], ...]:

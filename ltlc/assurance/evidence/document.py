@@ -1,4 +1,4 @@
-"""The document of evidence, version 1: what was judged, by what, and for each property its letters and its verdict.
+"""The document of evidence, version 2: what was judged, by what, and for each property its letters and its verdict.
 
 One item a line, in one order; `docs/evidence.md` describes them. What is read is written again as the same bytes, or is
 refused, and the last line has the SHA-256 of all before it: no byte can be changed unnoticed.
@@ -18,7 +18,7 @@ from ltlc.dataclass import dataclass
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.verdicts import Verdict
 
-HEADER = "ltlc-evidence 1"
+HEADER = "ltlc-evidence 2"
 END = "end sha256 "
 
 Data = dict[str, object]

@@ -22,112 +22,57 @@ import json
 import math
 import re
 import sys
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from contextlib import closing, contextmanager, nullcontext, suppress
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager, nullcontext, suppress
 from decimal import Decimal
 from fractions import Fraction
-from functools import lru_cache, partial, reduce
-from operator import attrgetter
+from functools import partial, reduce
+from operator import add, attrgetter
 from pathlib import Path
 from typing import Any, NamedTuple
+from uuid import UUID
 
 import numpy as np
 
-SECOND = 1_000_000_000
-EXACT = 2**53
-"""Up to here integers are doubles."""
-MOST_TICKS = 10**8
-MOST_COMBINATIONS = 10**6
-MOST_ROUNDS = 100
-"""So often it is looked anew which steps there are, as that depends on values at openings."""
-TIMES = ("time", "__time", "timestamp")
-"""Heads of a column of times."""
+SECOND, EXACT = 10**9, 2**53  # in ns; up to here integers are doubles
+MOST_TICKS, MOST_COMBINATIONS, MOST_ROUNDS = 10**8, 10**6, 100
 
 Json = Any
-Array = Any
-"""An array of numpy."""
+Array = Any  # of numpy
 
 
 class Refused(Exception):  # noqa: N818
-    """It is not as written."""
-
-
-class NotCovered(Exception):  # noqa: N818
-    """It cannot be checked by this program."""
-
-
-@contextmanager
-def covered(problem: str) -> Iterator[None]:
-    """Whatever else goes wrong is not covered."""
-    try:
-        yield
-    except (Refused, NotCovered):
-        raise
-    except Exception as error:
-        raise NotCovered(f"{problem}: {type(error).__name__}: {str(error).partition(chr(10))[0]}") from None
+    """It is not as written; after any other exception that is not known."""
 
 
 # The document --------------------------------------------------------------------------------------------------------
 
-HEX, TIME, LETTER = "[0-9a-f]{64}", "(?:0|[1-9][0-9]{0,18})", "(?: a(?:0|[1-9][0-9]?))*"
-HEAD = rf"""ltlc-evidence 1
-ltlc .+
-specification .+ sha256 {HEX}
-certificates sha256 {HEX}
-(recording .+ {TIME} sha256 {HEX}
-)+(definition .+ sha256 {HEX}
-)*(signal \S+ \S+ {{.*}}
-)*(rate [0-9.e+-]+
-)?(timeout {TIME}
-)?(stamp header
-)?(from {TIME}
-)?(to {TIME}
-)?"""
-JUDGED = rf"""(?:letters {TIME} sha256 {HEX}
-|at {TIME}{LETTER}
-(?:\+{TIME}{LETTER}
-)*+)?until {TIME}
-verdict [a-z_]+ {TIME}
-"""
-CLAIM = rf"""not-covered .+: .+
-|property .+
-text .+
-(requirement .+
-)?(verifies .+
-)*(atom .+
-is {{.*}}
-)*(count .+
-of .+
-)*(scope {TIME}(?: {TIME}-(?:{TIME})?)*
-)*(instances a[0-9]+
-)?(key {{.*}}
-)?session {TIME}
-(slice .+
-{JUDGED})*{JUDGED}"""
+# Which lines there are, by their first words.
+SETTINGS, ATOMS = "( rate)?( timeout)?( stamp)?( from)?( to)?", "( atom is)*( count of)*( scope)*( instances)?( key)?"
+HEAD = f"ltlc-evidence ltlc specification certificates( recording)+( definition)*( signal)*{SETTINGS}"
+RUN = r"( letters| at( \+)*+)? until verdict"
+CLAIM = f"not-covered|property text( requirement)?( verifies)*{ATOMS} session( slice{RUN})*{RUN}"
+# What is stated of a run.
+STATED = re.compile(
+    r"(?m)^(?:slice (?P<id>.+)\n)?(?P<letters>(?:[al+].+\n)*+)until (?P<until>.+)\nverdict (?P<verdict>.+) (?P<at>.+)\n"
+)
 
 
 class Section:
-    """The head of a document, or what it says of a property: by the first word of a line, what follows it.
-
-    Equal `parts` of conditions are one object, so that each is computed once.
-    """
+    """The head of a document, or what it says of a property; equal `parts` in JSON are one object, computed once."""
 
     def __init__(self, text: str, form: str, parts: dict[str, Json]) -> None:
-        if not re.fullmatch(form, text):
+        lines = re.findall(r"^(\+|\S*) ?(.*)$", text.removesuffix("\n"), re.MULTILINE)
+        if not re.fullmatch(form, " ".join(word for word, _ in lines)):
             raise ValueError(f"what begins with `{text.partition(chr(10))[0][:80]}` is not written as it should be")
-        self.text, self.parts = text, parts
         self.said: dict[str, list[str]] = {}
-        self.lines: list[str] = []
-        """Those that were computed in place of digests, if they are as stated."""
-        for row in text.split("\n"):
-            word, _, rest = row.replace("+", "+ ", 1).partition(" ") if row[:1] == "+" else row.partition(" ")
+        for word, rest in lines:
             self.said.setdefault(word, []).append(rest)
         read = partial(json.loads, object_hook=lambda x: parts.setdefault(json.dumps(x), x))
-        texts = [*self.said.get("is", []), *(each.split(" ", 2)[2] for each in self.said.get("signal", []))]
-        self.data: list[Json] = [*map(read, texts)]
-        """What the atoms are, or the signals of a table."""
-        self.key: list[Json] = [*map(read, self.said.get("key", []))]
-        """The field that has ids, if there are slices."""
+        self.signals = [(*row.split(" ", 2)[:2], read(row.split(" ", 2)[2])) for row in self.said.get("signal", [])]
+        self.atoms, self.key = ([read(each) for each in self.said.get(word, [])] for word in ("is", "key"))
+        self.scopes = [each.split(" ") for each in self.said.get("scope", [])]
+        self.runs = [found.groupdict() for found in STATED.finditer(text)]  # of slices, and at last the whole one
 
     def one(self, word: str) -> str:
         """What follows a word that is there once, or not."""
@@ -141,50 +86,34 @@ class Section:
         """What stands before and behind the word `sha256`."""
         return {name: digest for name, _, digest in (each.rpartition(" sha256 ") for each in self.said.get(word, []))}
 
-    @property
-    def filled(self) -> str:
-        """Its text, with the lines that were computed in place of their digests."""
-        found, computed = re.compile("^letters .*\n", re.M), iter(self.lines)
-        is_computed = len(found.findall(self.text)) == len(self.lines)
-        return found.sub(lambda _: next(computed), self.text) if is_computed else self.text
-
-    @property
-    def slices(self) -> dict[str, Section]:
-        """What it says of each slice, as of a property of its own; by the ids."""
-        before, *blocks = re.split("^slice ", self.text, flags=re.M)
-        before = re.sub("^key .*\n", "", before, flags=re.M)
-        pairs = (re.match(f"(.+)\n({JUDGED})", block) for block in blocks)
-        return {pair[1]: Section(before + pair[2], CLAIM, self.parts) for pair in pairs if pair}
-
 
 class Document:
-    """The evidence of one recording."""
+    """The evidence of one recording; `computed` are the lines that have the digests in it."""
 
     def __init__(self, text: str) -> None:
         parts: dict[str, Json] = {}
-        head, *properties = (f"{each}\n" for each in text.removesuffix("\n").split("\n\n"))
-        self.head = Section(head, HEAD, parts)
-        self.properties = [Section(each, CLAIM, parts) for each in properties]
-        self.claims = [each for each in self.properties if "property" in each.said]
-        self.not_covered = [each.one("not-covered") for each in self.properties if "not-covered" in each.said]
+        head, *properties = text.removesuffix("\n").split("\n\n")
+        self.text, self.head, self.computed = text, Section(head, HEAD, parts), dict[str, str]()
+        if self.head.one("ltlc-evidence") != "2":
+            raise ValueError("this is evidence of another version than 2")
+        sections = [Section(f"{each}\n", CLAIM, parts) for each in properties]
+        self.claims = [each for each in sections if "property" in each.said]
+        self.not_covered = [each.one("not-covered") for each in sections if "not-covered" in each.said]
 
     @property
     def filled(self) -> str:
-        """The same text, with the lines that were computed in place of their digests."""
-        text = "\n".join([self.head.text, *(each.filled for each in self.properties)])
+        """The same text, with these lines in place of their digests."""
+        text = re.sub(r"(?m)^letters .*\n", lambda found: self.computed.get(found[0], found[0]), self.text)
         return f"{text}end sha256 {sha256(text)}\n"
 
 
 def documents(text: str) -> list[Document]:
     """The documents in a text, each of which ends with the digest of its lines. Raises ValueError."""
-    *pairs, rest = re.split(rf"^end sha256 ({HEX})\n", text, flags=re.M)
-    if not text.startswith("ltlc-evidence "):
-        raise ValueError("this is no evidence")
-    if rest or not pairs:
-        raise ValueError("the evidence does not end with its digest")
-    if any(sha256(body) != digest for body, digest in zip(pairs[::2], pairs[1::2], strict=True)):
+    *pairs, rest = re.split(r"(?m)^end sha256 (.*)\n", text)
+    bodies, digests = pairs[::2], pairs[1::2]
+    if rest or not pairs or [*map(sha256, bodies)] != digests:
         raise ValueError("the last line has not the digest of the lines before it")
-    return [Document(body) for body in pairs[::2]]
+    return [Document(body) for body in bodies]
 
 
 def sha256(text: str) -> str:
@@ -196,51 +125,46 @@ def sha256(text: str) -> str:
 
 
 class Recording:
-    """What a document needs of a recording: the `times` of its messages, and their places in this list.
+    """The `times` of the messages that a document needs, and by `topics` their places in this list.
 
-    `topics` has the places of the messages on each topic; `samples`, by the identity of what is read, those of the
-    messages that have it, and its values. The run begins at `first`, and ends at `last`; of a slice, no message before
-    the place `begins` is a step. `kept` is what was computed.
+    `samples` are, by the identity of what is read, the places of the messages that have it, and its values. The run
+    lasts from `first` to `last`; before `begins`, a place, is no step.
     """
 
-    def __init__(self) -> None:
-        self.times: Array = []
-        self.topics: dict[str, Array] = {}
-        self.samples: dict[int, tuple[Array, Array]] = {}
-        self.first = self.last = self.begins = 0
-        self.kept: dict[Any, Values] = {}
+    def __init__(self, times: Array, topics: dict[str, Array], samples: dict[int, tuple[Array, Array]]) -> None:
+        self.times, self.topics, self.samples = times, topics, samples
+        self.first, self.last, self.begins = 0, 0, -1
 
-    def settle(self, head: Section, span: tuple[int, int] | None) -> None:
-        """All is read: put it in the order of time, and of the file among equal times, and take the part asked for.
+    def part(self, old: Array, first: int, last: int) -> Recording:
+        """The messages at these places, in this order, as a run from `first` to `last`."""
+        topics = {name: np.flatnonzero(np.isin(old, places)) for name, places in self.topics.items()}
+        found = Recording(self.times[old], topics, {})
+        found.first, found.last = first, last
+        for what, (places, values) in self.samples.items():
+            having = np.flatnonzero(np.isin(old, places))
+            found.samples[what] = having, values[places.searchsorted(old[having])]
+        return found
 
-        The recording lasts for this `span`, or as long as the messages that are read.
-        """
-        since, to, times = head.time("from"), head.time("to"), np.array(self.times, np.int64)
-        order = times.argsort(kind="stable")
-        if since is not None:
-            order = order[times[order] >= since]
-        if to is not None:
-            order = order[times[order] <= to]
-        if span is None and not len(order):
-            raise Refused("the recording has no messages")
-        first, last = span or times[order[[0, -1]]].tolist()
-        self.first = first if since is None else max(first, since)
-        self.last = last if to is None else to
-        place_of = np.full(len(times), -1)
-        place_of[order] = np.arange(len(order))
-        self.times = times[order]
-        for topic, numbers in self.topics.items():
-            places = np.unique(place_of[np.array(numbers, np.int64)])
-            self.topics[topic] = places[places >= 0]
-        for what, (numbers, values) in self.samples.items():
-            places = place_of[np.array(numbers, np.int64)]
-            is_there = (places >= 0) & np.array([value is not None for value in values], bool)
-            having = np.flatnonzero(is_there)[places[is_there].argsort()]
-            self.samples[what] = places[having], column([values[n] for n in having.tolist()])
+
+Samples = dict[int, tuple[list[int], list[Any]]]  # by the identity of what is read: places of messages, and values
+
+
+def recording(times: list[int], topics: dict[str, list[int]], samples: Samples, head: Section, span: Any) -> Recording:
+    """What was read, in order, of the part that is asked for; without a `span`, it lasts as long as its messages."""
+    whole = Recording(np.array(times, np.int64), {name: np.array(at, np.int64) for name, at in topics.items()}, {})
+    for what, (places, values) in samples.items():
+        whole.samples[what] = np.array(places, np.int64), column(values)
+    since, to, order = head.time("from"), head.time("to"), whole.times.argsort(kind="stable")
+    for end, is_within in ((since, np.greater_equal), (to, np.less_equal)):
+        order = order if end is None else order[is_within(whole.times[order], end)]
+    if span is None and not len(order):
+        raise Refused("the recording has no messages")
+    first, last = span or whole.times[order[[0, -1]]].tolist()
+    return whole.part(order, first if since is None else max(first, since), last if to is None else to)
 
 
 def parts(x: Json) -> Iterator[Json]:
-    """An expression or a condition, and all that is in it."""
+    """An expression, and all that is in it."""
     if isinstance(x, dict):
         yield x
     if isinstance(x, dict | list):
@@ -248,16 +172,15 @@ def parts(x: Json) -> Iterator[Json]:
             yield from parts(part)
 
 
+def fields(x: Json) -> dict[int, Json]:
+    """The fields that it reads, by their identity."""
+    return {id(part): part for part in parts(x) if "path" in part}
+
+
 def topics_of(x: Json) -> set[str]:
     """The topics whose messages it reads, be it only that they come."""
-    found = {part["topic"] for part in parts(x) if "path" in part}
+    found = {part["topic"] for part in fields(x).values()}
     return found.union(*(part[key] for part in parts(x) for key in ("new", "message") if key in part))
-
-
-def getter(path: list[Json]) -> Callable[[Any], Any]:
-    """What takes the value at a path out of a message; None if there is none."""
-    is_plain = bool(path) and all(isinstance(step, str) for step in path)
-    return attrgetter(".".join(path)) if is_plain else partial(value_at, path=path)
 
 
 def value_at(value: Any, path: list[Json], around: Any = None) -> Any:
@@ -276,124 +199,97 @@ def value_at(value: Any, path: list[Json], around: Any = None) -> Any:
             case ["each"] | ["own"]:
                 return [value_at(each, path[depth + 1 :], value) for each in value]
             case ["bytes"]:
-                text = bytes(value).hex()
-                return "-".join((text[:8], text[8:12], text[12:16], text[16:20], text[20:])) if text[31:] else text
+                return str(UUID(bytes=bytes(value))) if len(value) == 16 else bytes(value).hex()
             case _:
                 raise Refused(f"what is this: {step}")
         if value is None:
             return None
-    return value
+    return value.item() if isinstance(value, np.generic) else value
 
 
 def read(path: Path, document: Document) -> Recording:
-    """Read what the claims of a document need."""
-    if re.search(r"\.(csv|jsonl|ndjson|parquet)(\.gz|\.zst)?$", path.name, re.I) and path.is_file():
-        with covered("it cannot be read as a table"):
-            return read_table(path, document.head)
-    with covered("what it reads is not to be found"):
-        atoms = [each.data + each.key for each in document.claims]
-        wanted: dict[str, dict[int, Json]] = {name: {} for name in topics_of(atoms)}
-        for part in parts(atoms):
-            if "path" in part:
-                wanted[part["topic"]][id(part)] = part
-    bags = [at for at in files_of(path) if at.name != "metadata.yaml"]
-    for paths in ([path], bags):  # by some old metadata rosbags finds nothing, but by the files
-        with covered("rosbags cannot read it"), closing(opened(paths, document.head)) as reader:
-            if reader.message_count:
-                return read_bag(reader, document.head, wanted)
-    raise Refused("the recording has no messages")
-
-
-def opened(paths: list[Path], head: Section) -> Any:
-    """The bag at some paths; where it defines no messages, they are those of the release that the digests are of."""
+    """Read what claims need; where a bag defines no messages, they are those of the release with these digests."""
+    if re.search(r"(?i)\.(csv|jsonl|ndjson|parquet)(\.gz|\.zst)?$", path.name) and path.is_file():
+        return read_table(path, document.head)
     from rosbags.highlevel import AnyReader, AnyReaderError  # noqa: TID251
+    from rosbags.interfaces import Nodetype  # noqa: TID251
     from rosbags.typesys import Stores, get_typestore  # noqa: TID251
 
-    wanted = head.digests("definition")
-    releases = sorted(Stores, key=lambda store: store is not Stores.ROS2_JAZZY)
-    for release in (None, *(each for each in releases if each.name.startswith("ROS2_"))):
-        reader = AnyReader(paths, default_typestore=get_typestore(release) if release else None)
-        with suppress(AnyReaderError) if release is None else nullcontext():
-            reader.open()
-            if wanted == {name: definition_digest(reader.typestore, name) for name in wanted}:
-                return reader
-            reader.close()
-    raise Refused("its messages are not defined as written, neither by itself nor by a release of ROS 2")
+    wanted = document.head.digests("definition")
+    releases = sorted((each for each in Stores if each.name[:4] == "ROS2"), key=lambda each: each.name != "ROS2_JAZZY")
+    bags = [at for at in files_of(path) if at.name != "metadata.yaml"]  # with old ones, rosbags finds no messages
+    for paths, release in itertools.product(([path], bags), (None, *releases)):
+        store = get_typestore(release) if release else None
+        is_defined = suppress(AnyReaderError) if store is None else nullcontext()
+        with is_defined, AnyReader(paths, default_typestore=store) as bag:
+            found = {name: sha256(layout(bag.typestore, Nodetype.NAME, name)) for name in wanted}
+            if found == wanted and bag.message_count:
+                return read_bag(bag, document.head, [each.atoms + each.key for each in document.claims])
+    raise Refused("it has no messages, or they are not defined as written, neither by itself nor by a release of ROS 2")
 
 
-def definition_digest(store: Any, name: str) -> str:
-    """The digest of the definition of a message, and of all that is in it."""
-    found, todo = {}, [name]
-    while todo:
-        of = todo.pop()
-        if of not in found and of in store.fielddefs:
-            fields = [(type_text(*kind), name) for name, kind in store.fielddefs[of][1]]
-            found[of] = f"{of}: {', '.join(f'{kind} {name}' for kind, name in fields)}\n"
-            todo += [kind.partition("[")[0] for kind, _ in fields]
-    return sha256("".join(found[of] for of in sorted(found)))
-
-
-def type_text(of: Any, what: Any) -> str:
-    """The type of a field, as rosbags has it."""
-    match of.name:
+def layout(store: Any, kind: Any, of: Any) -> str:
+    """How a type of rosbags is laid out in a message, with all that is in it."""
+    match kind.name:
         case "BASE":
-            return "uint8" if what[0] in ("byte", "octet", "char") else str(what[0])
+            return "uint8" if of[0] in ("byte", "octet", "char") else str(of[0])
         case "NAME":
-            return str(what)
+            fields = (f"{layout(store, *field)} {name}" for name, field in store.fielddefs.get(of, ([], []))[1])
+            return f"{of}({', '.join(fields)})"
         case _:
-            return f"{type_text(*what[0])}[{what[1] if of.name == 'ARRAY' else ''}]"
+            return f"{layout(store, *of[0])}[{of[1] if kind.name == 'ARRAY' else ''}]"
 
 
-def read_bag(reader: Any, head: Section, wanted: dict[str, dict[int, Json]]) -> Recording:
-    """The messages on the topics that are wanted, and of each of these the fields."""
-    found, by_header, takers = Recording(), head.one("stamp") == "header", {}
-    for name, fields in wanted.items():
-        numbers = found.topics.setdefault(name, [])
-        found.samples |= {what: (numbers, []) for what in fields}
+def read_bag(reader: Any, head: Section, stated: Json) -> Recording:
+    """The messages on the topics that are read, and of each of these the fields."""
+    times: list[int] = []
+    topics: dict[str, list[int]] = {name: [] for name in topics_of(stated)}
+    samples: Samples = {what: ([], []) for what in fields(stated)}
+    by_header, takers = "stamp" in head.said, {}
     for connection in reader.connections:
-        name = f"/{connection.topic.lstrip('/')}"
-        types = {each["type"] for each in wanted.get(name, {}).values()}
-        if types - {connection.msgtype}:
-            raise NotCovered(f"{name} has messages of type {connection.msgtype}")
-        if undefined := sorted(types - head.digests("definition").keys()):
-            raise Refused(f"how messages are defined is not written: {', '.join(undefined)}")
-        if name in wanted:
-            keeps = [(found.samples[what][1].append, getter(each["path"])) for what, each in wanted[name].items()]
-            takers[id(connection)] = found.topics[name].append, keeps
+        name, keeps = f"/{connection.topic.lstrip('/')}", []
+        for what, field in ((what, each) for what, each in fields(stated).items() if each["topic"] == name):
+            if field["type"] != connection.msgtype or field["type"] not in head.digests("definition"):
+                raise Refused(f"{name} has {connection.msgtype}, and how {field['type']} is defined has to be written")
+            is_plain = field["path"] and all(isinstance(step, str) for step in field["path"])
+            get = attrgetter(".".join(field["path"])) if is_plain else partial(value_at, path=field["path"])
+            keeps.append((samples[what][0].append, samples[what][1].append, get))
+        if name in topics:
+            takers[id(connection)] = topics[name].append, keeps
     first, last = 2**63, -(2**63)
     for connection, time, raw in reader.messages():
         first, last = min(first, time), max(last, time)
         if id(connection) not in takers:
             continue
-        add, keeps = takers[id(connection)]
+        (take, keeps), place = takers[id(connection)], len(times)
         message = reader.deserialize(raw, connection.msgtype) if keeps or by_header else None
         if by_header and (stamp := getattr(getattr(message, "header", None), "stamp", None)) is not None:
             time = stamp.sec * SECOND + stamp.nanosec
             if not time:
                 continue
-        add(len(found.times))
-        found.times.append(time)
-        for keep, get in keeps:
-            keep(get(message))
-    found.settle(head, None if by_header else (first, last))
-    return found
+        take(place)
+        times.append(time)
+        for keep_place, keep, get in keeps:
+            if (value := get(message)) is not None:
+                keep_place(place)
+                keep(value)
+    return recording(times, topics, samples, head, None if by_header else (first, last))
 
 
 def read_table(path: Path, head: Section) -> Recording:
     """The rows of a table: each is a message on the topics of every signal that has a cell in it."""
-    found, (times, columns) = Recording(), table_at(path)
-    found.times = times
-    for row, x in zip(head.said.get("signal", []), head.data, strict=True):
-        name, kind, _ = row.split(" ", 2)
+    times, columns = table_at(path)
+    topics: dict[str, list[int]] = {}
+    samples: Samples = {}
+    for name, kind, x in head.signals:
         cells, index = cells_of(columns, name, kind, x)
-        values = [None if cell is None else value_of(cell, kind, index) for cell in cells]
-        numbers = [n for n, cell in enumerate(cells) if cell is not None and (x.get("path") != [] or values[n])]
+        pairs = [(place, value_of(cell, kind, index)) for place, cell in enumerate(cells) if cell is not None]
+        pairs = [(place, value) for place, value in pairs if x.get("path") != [] or value]
         for topic in topics_of(x):
-            found.topics[topic] = [*found.topics.get(topic, []), *numbers]
+            topics.setdefault(topic, []).extend(place for place, _ in pairs)
         if cells or "path" in x:  # what has no column is computed, unless it is a field
-            found.samples[id(x)] = numbers, [values[n] for n in numbers]
-    found.settle(head, None)
-    return found
+            samples[id(x)] = [at for at, value in pairs if value is not None], [v for _, v in pairs if v is not None]
+    return recording(times, topics, samples, head, None)
 
 
 def table_at(path: Path) -> tuple[list[int], dict[str, list[Any]]]:
@@ -401,11 +297,11 @@ def table_at(path: Path) -> tuple[list[int], dict[str, list[Any]]]:
     import pyarrow as pa
     from pyarrow import parquet
 
-    unit = SECOND
+    unit, names = SECOND, ("time", "__time", "timestamp")
     if path.suffix.lower() == ".parquet":
         table = parquet.read_table(path)
-        columns = {name: table[name].to_pylist() for name in table.column_names if name not in TIMES}
-        [times] = (table[name] for name in table.column_names if name in TIMES)
+        columns = {name: table[name].to_pylist() for name in table.column_names if name not in names}
+        [times] = (table[name] for name in table.column_names if name in names)
         if pa.types.is_timestamp(times.type):
             times = times.cast(pa.timestamp("ns")).cast(pa.int64())
         unit = 1 if pa.types.is_integer(times.type) else SECOND
@@ -418,21 +314,14 @@ def table_at(path: Path) -> tuple[list[int], dict[str, list[Any]]]:
             else:
                 rows = [json.loads(line, parse_float=Decimal) for line in text if line.strip()]
         columns = {head: [row.get(head) for row in rows] for head in dict.fromkeys(itertools.chain(*rows))}
-    times = columns.pop(next(head for head in TIMES if head in columns))
-    times = [int((Decimal(time) * unit).to_integral_value()) for time in times]
-    return times, {as_by_topic(head) if head.startswith("/") else head: cells for head, cells in columns.items()}
-
-
-def as_by_topic(head: str) -> str:
-    """The head of a column by topic and field, which may stand after a dot, as an index with PlotJuggler did once."""
-    return re.sub(r"\.([0-9]+)(?=[./]|$)", r"[\1]", head).replace(".", "/")
+    times = columns.pop(next(head for head in names if head in columns))
+    for head in [head for head in columns if head[0] == "/"]:  # or after dots, as an index with PlotJuggler once
+        columns[re.sub(r"\.([0-9]+)(?=[./]|$)", r"[\1]", head).replace(".", "/")] = columns[head]
+    return [int((Decimal(time) * unit).to_integral_value()) for time in times], columns
 
 
 def cells_of(columns: dict[str, list[Any]], name: str, kind: str, x: Json) -> tuple[list[Any], int | None]:
-    """The cells of a signal: of its own column, or that of its topic and field, or those of the elements of an array.
-
-    Of an array of which it is an element, its index, too.
-    """
+    """The cells of the column of a signal, of those of its elements, or of an array whose element has this index."""
     heads, path = [name], x.get("path", [None])
     if all(isinstance(step, str | int) or step == ["each"] for step in path):
         steps = (f"/{s}" if isinstance(s, str) else f"[{'' if s == ['each'] else s}]" for s in path)
@@ -444,9 +333,9 @@ def cells_of(columns: dict[str, list[Any]], name: str, kind: str, x: Json) -> tu
         if kind.endswith("[]"):
             numbered = (head if "[]" in head else f"{head}[]").replace("[]", "[{}]")
             elements = itertools.takewhile(columns.__contains__, map(numbered.format, itertools.count()))
-            rows = [[*row] for row in zip(*(columns[each] for each in elements), strict=True)]
-            if rows:
-                return [list(itertools.takewhile(lambda cell: cell is not None, row)) or None for row in rows], None
+            rows = zip(*(columns[each] for each in elements), strict=True)
+            if cells := [[*itertools.takewhile(lambda cell: cell is not None, row)] or None for row in rows]:
+                return cells, None
         elif array in columns:
             return columns[array], int(index)
     return [], None
@@ -458,40 +347,32 @@ def value_of(cell: Any, kind: str, index: int | None) -> Any:
         cells = json.loads(cell) if isinstance(cell, str) else cell
         values = [value_of(each, kind.removesuffix("[]"), None) for each in cells]
         return values if index is None else values[index] if index < len(values) else None
-    match kind:
-        case "string":
-            return cell
-        case "bool":
-            word = str(cell).strip().lower()
-            return word == "true" or (word != "false" and float(word) == 1)
-        case "float32":
-            return float(np.float32(float(cell)))
-        case "float64":
-            return float(cell)
-        case _:
-            return int(Decimal(cell))
+    if kind == "string":
+        return cell
+    if kind == "bool":
+        word = str(cell).strip().lower()
+        return word == "true" or (word != "false" and float(word) == 1)
+    if kind.startswith("float"):
+        return float(np.float32(float(cell)) if kind == "float32" else cell)
+    return int(Decimal(cell))
 
 
-# Values and functions ------------------------------------------------------------------------------------------------
+# Functions -----------------------------------------------------------------------------------------------------------
 
 
 def column(values: Any) -> Array:
-    """Values of one type as an array: booleans; doubles; integers that are doubles; anything else as it is."""
-    if len(values) and isinstance(values[0], list | np.ndarray):
-        return as_objects([column(each) for each in values])
-    found = np.asarray(values)
-    is_rounded = found.dtype.kind == "f" and isinstance(values, list) and int in {*map(type, values)}
-    if found.dtype.kind in "UO" or is_rounded:
-        return as_objects(values)
-    if found.dtype.kind in "iu":
-        is_wide = found.size and (found.min() < -EXACT or found.max() > EXACT)
-        return found.astype(object if is_wide else np.int64)
-    return found.astype(np.float64 if found.dtype.kind == "f" else bool)
-
-
-def as_objects(values: Any) -> Array:
-    """Values as they are."""
-    return np.fromiter(values, object, len(values))
+    """Values as an array: booleans; numbers, if all of them are doubles; anything else as Python has it."""
+    if isinstance(values, np.ndarray) and (values.dtype.kind in "bf" or values.dtype.itemsize < 8):
+        return values if values.dtype.kind == "b" else values.astype(np.float64)
+    values = values.tolist() if isinstance(values, np.ndarray) else values
+    kinds = {*map(type, values)}
+    if kinds == {bool}:
+        return np.array(values, bool)
+    is_wide = int in kinds and any(abs(value) > EXACT for value in values if isinstance(value, int))
+    if all(issubclass(kind, float | int) for kind in kinds) and not is_wide:
+        return np.array(values, np.float64)
+    is_array = bool(kinds & {list, np.ndarray})
+    return np.fromiter(map(column, values) if is_array else values, object, len(values))
 
 
 def is_nan(values: Array) -> Array:
@@ -499,60 +380,60 @@ def is_nan(values: Array) -> Array:
     return np.asarray(values != values).astype(bool)
 
 
-COMPARISONS = {
-    "<": np.less,
-    "<=": np.less_equal,
-    ">": np.greater,
-    ">=": np.greater_equal,
-    "==": np.equal,
-    "same": np.equal,
-}
+def each(function: Callable[..., Any]) -> Callable[..., Array]:
+    """A function of Python's as one of columns: of NaN, and outside of its domain, it is NaN; too large, infinite."""
 
-
-def compared(op: str, left: Array, right: Array, margin: float) -> Array:
-    """A comparison: exact without a margin, in doubles with one."""
-    if op not in COMPARISONS:
-        raise Refused(f"no such comparison: {op}")
-    if not margin:
-        return COMPARISONS[op](left, right).astype(bool)
-    left, right = left.astype(np.float64), right.astype(np.float64)
-    return (left == right) | (np.abs(left - right) <= margin) if op == "==" else COMPARISONS[op](left, right + margin)
-
-
-def called(name: str, given: list[Array], of: list[Json]) -> Array:
-    """A function of numbers `of` these expressions."""
-    match name:
-        case "neg":
-            return -given[0]
-        case "abs":
-            return np.abs(given[0])
-        case "min" | "max":  # of integers, and constants that are such, exactly
-            pairs = zip(given, of, strict=True)
-            if not all(each.dtype != np.float64 or (isinstance(x, float) and x.is_integer()) for each, x in pairs):
-                given = [each.astype(np.float64) for each in given]
-            is_better = np.less if name == "min" else np.greater
-            best = reduce(lambda one, other: np.where(is_better(other, one), other, one), given)
-            return np.where(reduce(np.logical_or, map(is_nan, given)), math.nan, best)
-        case _ if name in FUNCTIONS:
-            return FUNCTIONS[name](*(each.astype(np.float64) for each in given))
-        case _:
-            raise NotCovered(f"the function {name}")
-
-
-def pointwise(function: Callable[..., float]) -> Callable[..., Array]:
-    """A function of Python's: of NaN, and outside of its domain, it is NaN; too large, infinite."""
-
-    def value(*given: float) -> float:
-        if any(map(math.isnan, given)):
-            return math.nan
+    def value(*given: Any) -> Any:
         try:
             return function(*given)
-        except ValueError:
+        except (ValueError, IndexError, ZeroDivisionError):
             return math.nan
         except OverflowError:
             return math.inf
 
-    return np.vectorize(value, otypes=[np.float64])
+    def values(*columns: Array) -> Array:
+        found, before, latest = list[Any](), None, None
+        columns = np.broadcast_arrays(*columns)
+        for row in zip(*(each.ravel().tolist() for each in columns), strict=True):
+            now = [id(one) if isinstance(one, np.ndarray) else one for one in row]
+            if now != before:
+                before, latest = now, math.nan if any(one != one for one in now) else value(*row)
+            found.append(latest)
+        return column(found).reshape(columns[0].shape)
+
+    return values
+
+
+def known(array: Array) -> Array:
+    """The elements that are not NaN."""
+    return array[~is_nan(array)]
+
+
+def total(array: Array) -> float:
+    """The double nearest to the sum."""
+    try:
+        return math.fsum(array.tolist()) + 0.0
+    except OverflowError:  # on the way, though perhaps not in the end
+        return math.fsum((array / 2**64).tolist()) * 2.0**64
+
+
+def median(array: Array) -> float:
+    """The middle one; of an even number the double nearest to the mean of the middle two."""
+    values = np.sort(known(array).astype(np.float64)).tolist()
+    low, high = values[(len(values) - 1) // 2], values[len(values) // 2]
+    return float((Fraction(low) + Fraction(high)) / 2) if math.isfinite(low) and math.isfinite(high) else low + high
+
+
+def nearest(sought: float, array: Array) -> float:
+    """The first element that differs least."""
+    some = known(array).astype(np.float64)
+    return float(some[np.where(some == sought, 0.0, np.abs(some - sought)).argmin()])
+
+
+def best(is_better: Callable[..., Array], *given: Array) -> Array:
+    """The least or the greatest of some numbers; NaN where one of them is."""
+    found = reduce(lambda one, other: np.where(is_better(other, one), other, one), given)
+    return np.where(reduce(np.logical_or, map(is_nan, given)), math.nan, found)
 
 
 def unit(*q: float) -> list[float]:
@@ -563,63 +444,52 @@ def unit(*q: float) -> list[float]:
     return [each / length for each in q]
 
 
-def euler(name: str, *q: float) -> float:
-    """The angle about an axis of an orientation, which is yaw about z, then pitch about y, then roll about x."""
+def euler(*q: float) -> tuple[float, float, float]:
+    """The angles of an orientation, which is yaw about z, then pitch about y, then roll about x; in reverse order."""
     x, y, z, w = unit(*q)
-    match name:
-        case "roll":
-            return math.atan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y))
-        case "pitch":
-            return math.asin(max(-1.0, min(1.0, 2 * (w * y - z * x))))
-        case _:
-            return math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
+    roll = math.atan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y))
+    pitch = math.asin(max(-1.0, min(1.0, 2 * (w * y - z * x))))
+    return roll, pitch, math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
 
 
 def angle(*both: float) -> float:
     """Between two orientations, by half of it: the tangent is that of their difference and their sum."""
     p, q = unit(*both[:4]), unit(*both[4:])
-    apart = math.hypot(*(a - b for a, b in zip(p, q, strict=True)))
-    together = math.hypot(*(a + b for a, b in zip(p, q, strict=True)))
+    apart, together = math.dist(p, q), math.hypot(*map(add, p, q))
     return 4 * math.atan2(min(apart, together), max(apart, together))
 
 
-def edges(corners: tuple[float, ...]) -> Iterator[tuple[float, ...]]:
-    """From each corner to the next, and from the last to the first."""
-    points = [corners[n : n + 2] for n in range(0, len(corners), 2)]
-    return ((*one, *other) for one, other in zip(points, [*points[1:], points[0]], strict=True))
-
-
-@lru_cache(1 << 16)
-def inside(x: float, y: float, *corners: float) -> float:
-    """Whether a point is on the border, or the border crosses the ray to its right an odd number of times, exactly."""
+def from_zone(x: float, y: float, *corners: float) -> tuple[bool, float]:
+    """Whether a point is in a polygon, border included: exactly, by what the ray to its right crosses; and how far."""
     if not math.isfinite(x) or not math.isfinite(y):
-        return 0.0
-    px, py, odd = Fraction(x), Fraction(y), False
-    for edge in edges(corners):
-        ax, ay, bx, by = map(Fraction, edge)
+        return False, math.inf
+    points, is_in, ways = [*zip(corners[::2], corners[1::2], strict=True)], False, []
+    for one, other in zip(points, points[1:] + points[:1], strict=True):
+        px, py, ax, ay, bx, by = map(Fraction, (x, y, *one, *other))
         turn = (bx - ax) * (py - ay) - (by - ay) * (px - ax)
         if turn == 0 and min(ax, bx) <= px <= max(ax, bx) and min(ay, by) <= py <= max(ay, by):
-            return 1.0
-        if (ay > py) != (by > py):
-            odd ^= (turn > 0) == (by > ay)
-    return float(odd)
+            return True, 0.0
+        is_in ^= (ay > py) != (by > py) and (turn > 0) == (by > ay)
+        x0, y0, along, across = x - one[0], y - one[1], other[0] - one[0], other[1] - one[1]
+        if 0 < x0 * along + y0 * across < along * along + across * across:
+            ways.append(abs(along * y0 - across * x0) / math.hypot(along, across))
+        else:
+            ways.append(min(math.hypot(x0, y0), math.hypot(x0 - along, y0 - across)))
+    return is_in, 0.0 if is_in else min(ways)
 
 
-def distance(x: float, y: float, *corners: float) -> float:
-    """From the nearest edge; 0 inside."""
-    if inside(x, y, *corners):
-        return 0.0
-    return min(from_edge(x - ax, y - ay, bx - ax, by - ay) for ax, ay, bx, by in edges(corners))
+COMPARISONS = {"<": np.less, "<=": np.less_equal, ">": np.greater, ">=": np.greater_equal, "==": np.equal}
 
-
-def from_edge(x: float, y: float, along: float, across: float) -> float:
-    """Of a point from an edge that begins at 0."""
-    if 0 < x * along + y * across < along * along + across * across:
-        return abs(along * y - across * x) / math.hypot(along, across)
-    return min(math.hypot(x, y), math.hypot(x - along, y - across))
-
-
+# Of columns; by numpy where that computes as IEEE 754 has it.
 FUNCTIONS: dict[str, Callable[..., Array]] = {
+    "not": np.logical_not,
+    "and": lambda *given: reduce(np.logical_and, given),
+    "or": lambda *given: reduce(np.logical_or, given),
+    "neg": np.negative,
+    "abs": np.abs,
+    "min": partial(best, np.less),
+    "max": partial(best, np.greater),
+    "double": lambda x: x.astype(np.float64),
     "+": np.add,
     "-": np.subtract,
     "*": np.multiply,
@@ -628,66 +498,25 @@ FUNCTIONS: dict[str, Callable[..., Array]] = {
     "floor": lambda x: np.floor(x) + 0.0,
     "ceil": lambda x: np.ceil(x) + 0.0,
     "sign": lambda x: np.sign(x) + 0.0,
-    "gap": lambda x, y: np.where(x == y, 0.0, x - y),
-    **{name: pointwise(getattr(math, name)) for name in ("exp", "sin", "cos", "tan", "asin", "acos", "atan2", "hypot")},
-    "log": pointwise(lambda x: -math.inf if x == 0 else math.log(x)),
     "mod": lambda x, y: np.mod(x, y) + 0.0,
-    "angle_between": pointwise(lambda one, other: abs(math.remainder(one - other, math.tau))),
-    **{name: pointwise(partial(euler, name)) for name in ("roll", "pitch", "yaw")},
-    "angle": pointwise(angle),
-    "inside": pointwise(inside),
-    "distance": pointwise(distance),
+    "gap": lambda x, y: np.where(x == y, 0.0, x - y),
+    **{name: each(getattr(math, name)) for name in ("exp", "sin", "cos", "tan", "asin", "acos", "atan2", "hypot")},
+    "log": each(lambda x: -math.inf if x == 0 else math.log(x)),
+    "angle_between": each(lambda one, other: abs(math.remainder(one - other, math.tau))),
+    **{name: each(lambda *q, n=n: euler(*q)[n]) for n, name in enumerate(("roll", "pitch", "yaw"))},
+    "angle": each(angle),
+    "inside": each(lambda *given: float(from_zone(*given)[0])),
+    "distance": each(lambda *given: from_zone(*given)[1]),
+    "number": each(float),
+    "len": each(len),
+    "slice": each(lambda array, *ends: array[slice(*(None if end is None else int(end) for end in ends))]),
+    "sum": each(total),
+    "least": each(lambda array: known(array).min()),
+    "greatest": each(lambda array: known(array).max()),
+    "mean": each(lambda array: total(known(array)) / len(known(array))),
+    "median": each(median),
+    "nearest": each(nearest),
 }
-"""Functions of doubles, by numpy where that computes as IEEE 754 has it."""
-
-
-def of_array(name: str, array: Array) -> Any:
-    """A function of the elements of an array; but for their sum, of those that are not NaN."""
-    if name == "len":
-        return len(array)
-    if name == "sum":
-        return total(array.astype(np.float64).tolist())
-    known = array[~is_nan(array)]
-    if not len(known):
-        return math.nan
-    match name:
-        case "min" | "max":
-            return known[known.argmin() if name == "min" else known.argmax()]
-        case "mean":
-            return total(known.astype(np.float64).tolist()) / len(known)
-        case "median":
-            return median(known.astype(np.float64).tolist())
-        case _:
-            raise NotCovered(f"the function {name} of an array")
-
-
-def total(values: list[float]) -> float:
-    """The double nearest to the sum."""
-    infinite = {value for value in values if not math.isfinite(value)}
-    if infinite:
-        return infinite.pop() if len(infinite) == 1 else math.nan
-    with suppress(OverflowError):
-        return math.fsum(values) + 0.0
-    exact = sum(map(Fraction, values))
-    with suppress(OverflowError):
-        return float(exact)
-    return math.inf if exact > 0 else -math.inf
-
-
-def median(values: list[float]) -> float:
-    """The middle one; of an even number the double nearest to the mean of the middle two."""
-    values = sorted(values)
-    low, high = values[(len(values) - 1) // 2], values[len(values) // 2]
-    return float((Fraction(low) + Fraction(high)) / 2) if math.isfinite(low) and math.isfinite(high) else low + high
-
-
-def nearest(sought: float, array: Array) -> float:
-    """The first element that differs least."""
-    known = array[~is_nan(array)].astype(np.float64)
-    if math.isnan(sought) or not len(known):
-        return math.nan
-    return float(known[np.where(known == sought, 0.0, np.abs(known - sought)).argmin()])
-
 
 # Expressions ---------------------------------------------------------------------------------------------------------
 
@@ -695,10 +524,9 @@ YES, NO = np.ones(1, bool), np.zeros(1, bool)
 
 
 class Series(NamedTuple):
-    """What an expression or a condition is at each instant; with one entry, it is that at all of them.
+    """What an expression is at each instant, or with one entry at all; anything until all that it waits for is `known`.
 
-    It is `known` once all that is waited for has a value; until then it is anything. It is `fresh` where something that
-    is read is new, and `wrong` where something compared is NaN, or a first value does not come with its message.
+    It is `fresh` where what is read is new, `wrong` where NaN is compared, or a first value comes without its message.
     """
 
     now: Array
@@ -714,82 +542,66 @@ def combined(now: Array, *of: Series) -> Series:
     return Series(now, known, fresh, wrong)
 
 
+def applied(function: Callable[..., Array], *of: Series) -> Series:
+    """What a function gives of others, as soon as they have values."""
+    every = combined(NO, *of)
+    return every._replace(now=function(*(each.now for each in of))) if every.known.any() else every
+
+
 class Values:
     """The values of expressions at the instants of a run: the messages on some topics, or the ticks that see them."""
 
     def __init__(self, recorded: Recording, topics: Iterable[str], rate: Fraction | None, session: int | None) -> None:
         """With `session`, an instant of its own is the first, or the first tick is then."""
-        places = np.unique(np.concatenate([np.zeros(0, np.int64), *(recorded.topics[name] for name in topics)]))
+        is_read = np.zeros(len(recorded.times), bool)
+        is_read[np.concatenate([np.zeros(0, np.int64), *(recorded.topics[name] for name in topics)])] = True
+        places = np.flatnonzero(is_read)
         own = np.array([] if session is None else [session], np.int64)
         self.recorded, self.is_ticks = recorded, rate is not None
         self.times: Array = np.append(own, recorded.times[places])
+        # At which instant each message is seen; too large a number: at none.
         self.seen = np.append(np.full(len(own), -1), places).searchsorted(np.arange(len(recorded.times)))
-        """At which instant each message is seen; too large a number: at none."""
         if rate is not None and len(self.times):
-            self.times = ticks(rate, int(self.times[0]), recorded.last)
+            start, period = int(self.times[0]), SECOND / rate
+            count = max(0, math.ceil((recorded.last - start + 1) / period))
+            if count > MOST_TICKS:
+                raise NotImplementedError(f"more than {MOST_TICKS} ticks")
+            numbers = (number * period.numerator // period.denominator for number in range(count))
+            self.times = np.fromiter((start + number for number in numbers), np.int64, count)
             self.seen = self.times.searchsorted(recorded.times)
+        self.is_at_once = np.append(self.times, -1)[self.seen] == recorded.times
         self.count = len(self.times)
         self.found: dict[int, Series] = {}
-        self.taken: dict[int, Array] = {}
-        """Of each scope, at which instant the value at its opening was taken."""
+        self.taken: dict[int, Array] = {}  # of each scope, at which instant the value at its opening was taken
 
     def heard(self, topics: Iterable[str], *, now: bool = False) -> Array:
         """Where there is news of some topics; with `now`, at this very time."""
         found = np.zeros(self.count + 1, bool)
         for places in (self.recorded.topics[name] for name in topics):
-            found[self.seen[places[self.is_seen_at_once(places)] if now else places]] = True
+            found[self.seen[places[self.is_at_once[places]] if now else places]] = True
         return found[:-1]
 
-    def is_seen_at_once(self, places: Array) -> Array:
-        """Whether messages are seen at their own time."""
-        return np.append(self.times, -1)[self.seen[places]] == self.recorded.times[places]
-
-    def value(self, x: Json, given: dict[int, Series] | None = None) -> Series:
-        """What an expression or a condition is, or with elements of arrays, all of which are `given`."""
-        found = self.found if given is None else given
+    def value(self, x: Json, elements: list[Series] | None = None) -> Series:
+        """What an expression is; the predicate of a count, of these `elements` of arrays and values beside them."""
         if not isinstance(x, dict):
-            return Series(YES if x is True else column([x]))
-        if id(x) not in found:
-            found[id(x)] = self.made(x, lambda part: self.value(part, given))
-        return found[id(x)]
+            return Series(column([x]))
+        if elements is not None:
+            return elements[x["element"]] if "element" in x else self.made(x, partial(self.value, elements=elements))
+        if id(x) not in self.found:
+            self.found[id(x)] = self.made(x, self.value)
+        return self.found[id(x)]
 
     def made(self, x: Json, value: Callable[[Json], Series]) -> Series:
         """What it is, of the values of its parts."""
         match x:
             case _ if id(x) in self.recorded.samples:
                 return self.latest(x)
-            case {"not": operand}:
-                return combined(~value(operand).now, value(operand))
-            case {"and": of} | {"or": of}:
-                operands = [value(each) for each in of]
-                join = np.logical_and if "and" in x else np.logical_or
-                return combined(reduce(join, [each.now for each in operands]), *operands)
-            case {"op": "true", "left": of}:
-                return combined(value(of).now.astype(bool), value(of))
-            case {"op": op, "left": left, "right": right}:
-                sides = value(left), value(right)
-                is_missing = is_nan(sides[0].now) | is_nan(sides[1].now)
-                holds = compared(op, sides[0].now, sides[1].now, x.get("margin", 0.0))
-                return combined(holds, *sides, Series(holds, wrong=is_missing))
-            case {"predicate": predicate}:
-                return value(predicate)
-            case {"count": predicate}:
-                return self.count_of(predicate, x.get("over", []))
-            case {"number": text}:
-                return Series(column([float(text)]))
-            case {"slice": [start, stop], "of": array}:
-                return self.one_by_one(lambda of: of[start:stop], value(array))
-            case {"call": "len" | "sum" | "min" | "max" | "mean" | "median" as name, "of": [array]}:
-                return self.one_by_one(partial(of_array, name), value(array))
-            case {"call": "nearest", "of": [sought, array]}:
-                return self.one_by_one(nearest, value(sought), value(array))
             case {"call": name, "of": of}:
-                given = [value(each) for each in of]
-                return combined(called(name, [each.now for each in given], of), *given)
-            case {"new": topics}:
-                return Series(self.heard(topics), fresh=self.heard(topics))
-            case {"message": topics}:
-                return Series(self.heard(topics, now=True), fresh=self.heard(topics))
+                return self.called(name, [value(each) for each in of])
+            case {"count": predicate, "over": groups, "beside": beside}:
+                return self.count_of(predicate, groups, beside)
+            case {"new": topics} | {"message": topics}:
+                return Series(self.heard(topics, now="message" in x), fresh=self.heard(topics))
             case {"opening": of, "scope": number}:
                 everywhere = np.broadcast_to(value(of).now, self.count)
                 return Series(everywhere[self.taken[number]], value(of).known, value(of).fresh)
@@ -801,6 +613,15 @@ class Values:
             case _:
                 return self.latest(x)
 
+    def called(self, name: str, of: list[Series]) -> Series:
+        """A function of some values, which are compared only if none is NaN."""
+        if name not in COMPARISONS:
+            return applied(FUNCTIONS[name], *of)
+        wrong = is_nan(of[0].now) | is_nan(of[1].now)
+        return applied(
+            lambda one, other, _: COMPARISONS[name](one, other).astype(bool), *of, Series(wrong, wrong=wrong)
+        )
+
     def latest(self, x: Json) -> Series:
         """What is read of the samples of a signal."""
         of = x["of"] if x.keys() & {"ago", "recent", "slope"} else x
@@ -808,22 +629,19 @@ class Values:
         values, is_sample, fresh = self.samples(of)
         known, wrong = is_sample.cumsum() > ago, NO
         if "slope" in x:
-            seconds = [past / SECOND or math.nan for past in np.diff(self.times[is_sample]).tolist()]
-            values = np.append(math.nan, np.diff(values.astype(np.float64)) / seconds)
+            seconds = np.diff(self.times[is_sample]) / SECOND
+            values = np.append(math.nan, np.diff(values) / np.where(seconds == 0, math.nan, seconds))
         elif "recent" in x:
-            values = as_objects([values[max(n - ago, 0) : n + 1] for n in range(len(values))])
-            wrong = self.held(as_objects([is_nan(each).any() for each in values]), is_sample).astype(bool)
+            values = column([values[max(n - ago, 0) : n + 1] for n in range(len(values))])
+            wrong = self.held(np.array([is_nan(each).any() for each in values], bool), is_sample)
         return Series(self.held(values, is_sample, x.get("ago", 0)), known, fresh, wrong)
 
     def held(self, values: Array, at: Array, ago: int = 0) -> Array:
         """The latest of some values at each instant, which come `at` some of them, or that so many before."""
-        return values[np.maximum(at.cumsum() - 1 - ago, 0)] if len(values) else np.full(self.count, math.nan)
+        return values[np.maximum(at.cumsum() - 1 - ago, 0)] if len(values) else np.zeros(self.count, bool)
 
     def samples(self, x: Json) -> tuple[Array, Array, Array]:
-        """The samples of a signal; at which instants there is one; where something of which they are made is new.
-
-        What is computed has one where a part has one; with `when` only where that holds, and nothing compared is NaN.
-        """
+        """The samples of a signal; where there is one: a part of it is new, and `when` holds; where a part is new."""
         if "when" not in x and id(x.get("sampled")) in self.recorded.samples:
             x = x["sampled"]
         if id(x) in self.recorded.samples:
@@ -831,184 +649,101 @@ class Values:
             latest = self.seen[places].searchsorted(np.arange(self.count), "right") - 1
             at = (latest >= 0) & (self.is_ticks | (np.diff(latest, prepend=-1) > 0))
             return values[latest[at]], at, at
-        of, when, *measured = map(self.value, [x["sampled"], x.get("when", True), *x.get("measured", [])])
-        every = combined(when.now, of, when, *measured)
-        at = every.fresh & every.known
-        if "when" in x:
-            at = reduce(np.logical_and, [~is_nan(each.now) for each in (of, *measured)], at & when.now & ~when.wrong)
-        at, fresh, now = np.broadcast_arrays(at, every.fresh, of.now, np.zeros(self.count))[:3]
-        return now[at], at, fresh
+        of, when = self.value(x["sampled"]), self.value(x.get("when", True))
+        every = combined(when.now & ~when.wrong & ~is_nan(of.now) if "when" in x else YES, of, when)
+        now, at, fresh = (np.broadcast_to(each, self.count) for each in (of.now, every.known & every.now, every.fresh))
+        return now[at & fresh], at & fresh, fresh
 
-    def one_by_one(self, function: Callable[..., Any], *of: Series) -> Series:
-        """What a function gives of some values; it is called where one of them may have changed."""
-        every = combined(YES, *of)
-        is_new = every.fresh | np.append(True, every.fresh[:-1])
-        is_new, *given = np.broadcast_arrays(is_new & every.known, *(each.now for each in of), np.zeros(self.count))[
-            :-1
-        ]
-        found = [function(*(each[n] for each in given)) for n in np.flatnonzero(is_new)]
-        return combined(self.held(column(found), is_new), *of)
-
-    def count_of(self, predicate: Json, over: list[list[Json]]) -> Series:
-        """How many elements satisfy a predicate; NaN where something beside them is, or there are too many.
-
-        Arrays in one group of `over` are taken side by side, and the groups all with all: each of them is an axis. No
-        element satisfies the predicate for which something that is compared is NaN.
-        """
-        elements = [part for part in parts(predicate) if "element" in part]
-        arrays, beside = [each["element"] for each in elements], [*beside_elements(predicate)]
-        groups = over or [arrays]
-        axes = [next(n for n, group in enumerate(groups) if each in group) for each in arrays]
+    def count_of(self, predicate: Json, groups: list[list[Json]], beside: list[Json]) -> Series:
+        """How many elements satisfy a predicate; NaN where something beside them is, or there are too many."""
+        axes = [axis for axis, group in enumerate(groups) for _ in group]  # arrays in one group are side by side
 
         def count(*values: Any) -> float:
-            lists, others = values[: len(axes)], [column([each]) for each in values[len(axes) :]]
-            sizes = [min(len(a) for a, axis in zip(lists, axes, strict=True) if axis == n) for n in range(len(groups))]
-            if any(is_nan(each)[0] for each in others) or (len(sizes) > 1 and math.prod(sizes) > MOST_COMBINATIONS):
+            arrays, others = values[: len(axes)], [Series(column([each])) for each in values[len(axes) :]]
+            sizes = [min(len(a) for a, axis in zip(arrays, axes, strict=True) if axis == n) for n in range(len(groups))]
+            if len(sizes) > 1 and math.prod(sizes) > MOST_COMBINATIONS:
                 return math.nan
-            given = {id(part): Series(value) for part, value in zip(beside, others, strict=True)}
-            for part, array, axis in zip(elements, lists, axes, strict=True):
-                shape = [-1 if n == axis else 1 for n in range(len(sizes))]
-                given[id(part)] = Series(array[: sizes[axis]].reshape(shape))
-            found = self.value(predicate, given)
-            return int(np.count_nonzero(np.broadcast_to(found.now & ~found.wrong, sizes)))
+            shapes = np.where(np.eye(len(sizes), dtype=bool), -1, 1)
+            elements = [Series(a[: sizes[n]].reshape(shapes[n])) for a, n in zip(arrays, axes, strict=True)]
+            found = self.value(predicate, [*elements, *others])
+            return float(np.count_nonzero(np.broadcast_to(found.now & ~found.wrong, sizes)))
 
-        return self.one_by_one(count, *map(self.value, [*arrays, *beside]))
-
-
-def beside_elements(x: Json) -> Iterator[Json]:
-    """The largest expressions beside elements that read something."""
-    if isinstance(x, list):
-        for part in x:
-            yield from beside_elements(part)
-    elif isinstance(x, dict) and "element" not in x:
-        if x.keys() & {"op", "not", "and", "or"} or any("element" in part for part in parts(x)):
-            yield from beside_elements([*x.values()])
-        elif topics_of(x):
-            yield x
-
-
-def ticks(rate: Fraction, start: int, end: int) -> Array:
-    """The times of ticks, cut off to nanoseconds."""
-    period = SECOND / rate
-    count = max(0, ((end - start + 1) * period.denominator - 1) // period.numerator + 1)
-    if count > MOST_TICKS:
-        raise NotCovered(f"more than {MOST_TICKS} ticks")
-    return np.array([start + k * period.numerator // period.denominator for k in range(count)], np.int64)
+        return applied(each(count), *map(self.value, (*itertools.chain(*groups), *beside)))
 
 
 # Letters -------------------------------------------------------------------------------------------------------------
 
 
-class Run(NamedTuple):
-    """The instants of a property that may have lines: times and letters; since when ages count; the bits of news."""
-
-    times: Array
-    letters: Array
-    session: int
-    news: int
-
-    def lines(self, until: int) -> tuple[int, str]:
-        """How many instants have a line, and their text.
-
-        That are the first, a letter that is not the one held, and a time that is that of the line before.
-        """
-        end = int(self.times.searchsorted(until, "right"))
-        times, letters = self.times[:end], self.letters[:end]
-        differs = np.append(True, letters[1:] != (letters[:-1] & ~self.news))[:end]
-        for n in np.flatnonzero(times[1:] == times[:-1]) + 1:
-            differs[n] |= differs[n - 1]
-        times, letters = times[differs], letters[differs].tolist()
-        words = {letter: "".join(f" a{n}" for n in range(63) if letter >> n & 1) for letter in {*letters}}
-        gaps = np.diff(times, prepend=times[:1]).tolist()
-        text = "".join([f"+{gap}{words[letter]}\n" for gap, letter in zip(gaps, letters, strict=True)])
-        return len(times), f"at {times[0]}{text[2:]}" if text else ""
-
-
-class Scope:
-    """A scope of a property: its number, and from which steps up to which it is said to be open."""
-
-    def __init__(self, text: str) -> None:
-        self.text, [number, *spans] = text, text.split(" ")
-        self.number, pairs = int(number), [span.split("-") for span in spans]
-        self.spans = [slice(int(first), int(end) if end else None) for first, end in pairs]
-
-    def open(self, count: int) -> Array:
-        """At which steps it is open."""
-        found = np.zeros(count, bool)
-        for span in self.spans:
-            found[span] = True
-        return found
-
-    def taken(self, is_step: Array) -> Array:
-        """For each instant, at which one the value at the opening was taken: at itself unless it was open before."""
-        before = np.append(False, self.open(int(np.count_nonzero(is_step))))[np.cumsum(is_step) - is_step]
-        return np.maximum.accumulate(np.where(before, 0, np.arange(len(is_step))))
-
-    def check(self, count: int) -> None:
-        """Raise Refused if of so many steps it is not said as it should be."""
-        turns = np.flatnonzero(np.diff(self.open(count).astype(np.int8), prepend=0)).tolist()
-        spans = [f" {first}-{end}" for first, end in itertools.zip_longest(turns[::2], turns[1::2], fillvalue="")]
-        if self.text != "".join([str(self.number), *spans]):
-            raise Refused(f"from which steps on scope {self.number} is open is not written as it should be")
-
-
-def run_of(claim: Section, recorded: Recording, head: Section, *, apart: bool) -> Run:
-    """The run of a property. With `apart`, what begins with the session has an instant of its own there."""
-    with covered("its atoms cannot be computed"), np.errstate(all="ignore"):
-        atoms, rate = claim.data, Fraction(head.one("rate")) if head.one("rate") else None
-        begins = not is_waited_for(atoms) and (apart or rate is not None)
-        key = frozenset(topics_of(atoms)), begins
-        if key not in recorded.kept:
-            recorded.kept[key] = Values(recorded, key[0], rate, recorded.first if begins else None)
-        values, scopes = recorded.kept[key], [Scope(each) for each in claim.said.get("scope", [])]
-        is_step = np.zeros(values.count, bool)
-        for _ in range(MOST_ROUNDS):
-            if scopes:
-                values, before = Values(recorded, key[0], rate, recorded.first if begins else None), is_step
-                values.taken = {scope.number: scope.taken(before) for scope in scopes}
-            every = combined(YES, *map(values.value, atoms))
-            is_step = np.broadcast_to(every.fresh | values.is_ticks, values.count).copy()
-            is_step[:1] |= begins
-            is_step &= every.known & ~every.wrong
-            is_step[: values.seen[recorded.begins] if recorded.begins else 0] = False
-            if not scopes or np.array_equal(is_step, before):
-                break
-        else:
-            raise NotCovered("which steps there are depends on values at openings")
-        letters = np.zeros(values.count, np.int64)
-        for n, scope in enumerate(scopes, len(atoms)):
-            scope.check(int(values.times[is_step].searchsorted(claim.time("until") or 0, "right")))
-            letters[is_step] |= scope.open(int(np.count_nonzero(is_step))).astype(np.int64) << n
-        news, messages = 0, {}
-        for n, atom in enumerate(atoms):
-            letters |= values.value(atom).now.astype(np.int64) << n
-            of = atom["left"] if atom["op"] == "true" and isinstance(atom["left"], dict) else {}
-            news |= ("new" in of or "message" in of) << n
-            if "message" in of:
-                messages[1 << n] = of["message"]
-        run = Run(values.times[is_step], letters[is_step], recorded.first, news)
-        return with_messages(run, is_step, values, messages) if len(run.times) else run
-
-
-def with_messages(run: Run, is_step: Array, values: Values, messages: dict[int, list[str]]) -> Run:
-    """The steps, and between them the messages that make none, but from which ages count; of each the bit."""
-    all_times, bits = values.recorded.times, np.zeros(len(values.recorded.times), np.int64)
-    for bit, name in ((bit, name) for bit, names in messages.items() for name in names):
-        bits[values.recorded.topics[name]] |= bit
+def run_of(claim: Section, recorded: Recording, head: Section, until: int) -> tuple[Array, Array, int, int]:
+    """The instants of a property that may have lines: times and letters; the bits of news; since when ages count."""
+    values, is_step = steps_of(claim, recorded, head)
+    letters, bits, news = np.zeros(values.count, np.int64), np.zeros(len(recorded.times), np.int64), 0
+    for n, atom in enumerate(claim.atoms):
+        letters |= values.value(atom).now.astype(bool).astype(np.int64) << n
+        news |= bool(atom.keys() & {"new", "message"}) << n
+        for name in atom.get("message", []):
+            bits[recorded.topics[name]] |= 1 << n
+    for n, (number, *spans) in enumerate(claim.scopes, len(claim.atoms)):
+        said = is_open(spans, int(is_step.sum()))
+        letters[is_step] |= said.astype(np.int64) << n
+        turns = np.flatnonzero(np.diff(said[values.times[is_step] <= until], prepend=False)).tolist()
+        if spans != [f"{one}-{end}" for one, end in itertools.zip_longest(turns[::2], turns[1::2], fillvalue="")]:
+            raise Refused(f"from which steps on scope {number} is open is not written as it should be")
+    times, letters = values.times[is_step], letters[is_step]
+    # Between the steps are the messages that make none, but from which ages count.
     places = np.flatnonzero(bits)
-    places = places[~(np.append(is_step, False)[values.seen[places]] & values.is_seen_at_once(places))]
+    places = places[~(np.append(is_step, False)[values.seen[places]] & values.is_at_once[places])]
     before = np.flatnonzero(is_step).searchsorted(values.seen[places])
-    early, late = places[before == 0], places[before > 0]
-    last = [all_times[early[bits[early] & bit > 0]][-1:].tolist() for bit in messages if not run.letters[0] & bit]
-    if any(each != last[0] for each in last):
-        raise NotCovered("its ages count from different messages before its first step")
-    where, held = before[before > 0], run.letters & ~run.news
-    return Run(
-        np.insert(run.times, where, all_times[late]),
-        np.insert(run.letters, where, held[where - 1] | bits[late]),
-        last[0][0] if last and last[0] else run.session,
-        run.news,
-    )
+    early, late, where = places[before == 0], places[before > 0], before[before > 0]
+    waiting = [
+        n for n, atom in enumerate(claim.atoms) if len(letters) and "message" in atom and not letters[0] >> n & 1
+    ]
+    last = {int(recorded.times[early[bits[early] >> n & 1 > 0]].max(initial=-1)) for n in waiting}
+    if len(last) > 1:
+        raise NotImplementedError("its ages count from different messages before its first step")
+    session = recorded.first if last <= {-1} else max(last)
+    letters = np.insert(letters, where, letters[where - 1] & ~news | bits[late])
+    return np.insert(times, where, recorded.times[late]), letters, news, session
+
+
+def lines_of(times: Array, letters: Array, news: int) -> tuple[int, str]:
+    """The lines: of the first instant, of a letter that is not the one held, and at the time of the line before."""
+    differs = np.append(True, letters[1:] != (letters[:-1] & ~news))[: len(times)]
+    for n in np.flatnonzero(times[1:] == times[:-1]) + 1:
+        differs[n] |= differs[n - 1]
+    times, letters = times[differs], letters[differs].tolist()
+    words = {letter: "".join(f" a{n}" for n in range(63) if letter >> n & 1) for letter in {*letters}}
+    gaps = np.diff(times, prepend=times[:1]).tolist()
+    text = "".join([f"+{gap}{words[letter]}\n" for gap, letter in zip(gaps, letters, strict=True)])
+    return len(times), f"at {times[0]}{text[2:]}" if text else ""
+
+
+def steps_of(claim: Section, recorded: Recording, head: Section) -> tuple[Values, Array]:
+    """The values of a property at its instants, and which of these are steps."""
+    rate, begins = Fraction(head.one("rate")) if "rate" in head.said else None, not is_waited_for(claim.atoms)
+    topics, is_step = topics_of(claim.atoms), None
+    for _ in range(MOST_ROUNDS):  # which steps there are depends on values at openings, and these on the steps before
+        values = Values(recorded, topics, rate, recorded.first if begins else None)
+        before = np.zeros(values.count, bool) if is_step is None else is_step
+        for number, *spans in claim.scopes:
+            was_open = np.append(False, is_open(spans, int(before.sum())))[np.cumsum(before) - before]
+            values.taken[int(number)] = np.maximum.accumulate(np.where(was_open, 0, np.arange(values.count)))
+        every = combined(YES, *map(values.value, claim.atoms))
+        is_step = np.broadcast_to(every.fresh | values.is_ticks, values.count).copy()
+        is_step[:1] |= begins
+        is_step &= every.known & ~every.wrong
+        is_step[: values.seen[recorded.begins] if recorded.begins >= 0 else 0] = False
+        if not claim.scopes or np.array_equal(is_step, before):
+            return values, is_step
+    raise NotImplementedError("which steps there are depends on values at openings")
+
+
+def is_open(spans: list[str], count: int) -> Array:
+    """At which of so many steps a scope is said to be open."""
+    found = np.zeros(count, bool)
+    for first, _, end in (span.partition("-") for span in spans):
+        found[int(first) : int(end) if end else None] = True
+    return found
 
 
 def is_waited_for(x: Json) -> bool:
@@ -1021,204 +756,143 @@ def is_waited_for(x: Json) -> bool:
 # The comparison ------------------------------------------------------------------------------------------------------
 
 
-def check_document(document: Document, path: Path, say: Callable[[str], None]) -> int:
-    """Check all claims, and say what is found; the exit code."""
-    head, claims, codes = document.head, document.claims, [0]
-    for each in document.not_covered:
-        say(": nothing is claimed: ".join(each.split(": ", 1)))
-    if not claims:
-        return 0
-    with answered("", say, codes):
-        if ("stamp" in head.said or "timeout" in head.said) and document.not_covered:
-            raise Refused("something is claimed of some properties only, though the run depends on all")
-        recorded = read(path, document)
-        ends = end_of(document, recorded)
-        for claim in claims:
-            label = claim.one("property")
-            with answered(f"{label}: ", say, codes):
-                counts = check_claim(claim, recorded, head, ends)
-                say(f"{label}: the letters are as stated; {counts}")
+def main(arguments: list[str]) -> int:
+    """Check each document against the recording that has its digests; the exit code."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("evidence", type=Path)
+    parser.add_argument("recording", type=Path, nargs="+")
+    parser.add_argument("--fill", type=Path)
+    options, codes = parser.parse_args(arguments), [0]
+    try:
+        recordings = [(digests_of(path), path) for path in options.recording]
+        found = documents(options.evidence.read_bytes().decode("utf-8"))
+        for document in found:
+            if len(found) > 1:
+                print(f"recording {', '.join(document.head.digests('recording'))}")
+            with answered("", codes), np.errstate(all="ignore"):
+                check_document(document, recordings, codes)
+        if options.fill is not None:
+            options.fill.write_text("".join(each.filled for each in found), encoding="utf-8", newline="\n")
+    except (OSError, ValueError) as error:
+        print(f"recorded.py: {error}", file=sys.stderr)
+        return 2
     return 1 if 1 in codes else max(codes)
 
 
 @contextmanager
-def answered(label: str, say: Callable[[str], None], codes: list[int]) -> Iterator[None]:
-    """Say what is refused or not covered."""
+def answered(label: str, codes: list[int]) -> Iterator[None]:
+    """Print what is refused or not covered, and add the exit code; whatever else goes wrong is not covered."""
     try:
         yield
     except Refused as error:
-        say(f"{label}REFUSED: {error}")
+        print(f"{label}REFUSED: {error}")
         codes.append(1)
-    except NotCovered as error:
-        say(f"{label}NOT COVERED: {error}")
+    except Exception as error:
+        kind = "" if isinstance(error, NotImplementedError) else f"{type(error).__name__}: "
+        print(f"{label}NOT COVERED: {kind}{str(error).partition(chr(10))[0]}")
         codes.append(2)
 
 
-def end_of(document: Document, recorded: Recording) -> int:
-    """When the run ends: with the recording, or so long after the first step of a property."""
-    timeout = document.head.time("timeout")
-    if timeout is None:
-        return recorded.last
-    runs = [run_of(claim, recorded, document.head, apart=True) for claim in document.claims]
-    return min([recorded.last, *(int(run.times[0]) + timeout for run in runs if len(run.times))])
-
-
-def slices_of(claim: Section, recorded: Recording) -> dict[str, Recording]:
-    """The slices of all ids, as JSON, in the order of their first messages."""
-    [key] = claim.key
-    own = [each for each in parts(claim.data) if "path" in each and ["own"] in each["path"]]
-    places, values = recorded.samples[id(key)]
-    having = [dict(zip(*map(list, recorded.samples[id(each)]), strict=True)) for each in own]
-    found: dict[str, list[tuple[int, int]]] = {}
-    for place, ids in zip(places.tolist(), values, strict=True):
-        is_array = isinstance(ids, np.ndarray)
-        count = min([len(ids), *(len(each.get(place, [])) for each in having)]) if is_array else 1
-        for at, value in enumerate(ids[:count] if is_array else [ids]):
-            if (one := id_of(value)) is not None:
-                found.setdefault(json.dumps(one), []).append((place, at))
-    return {one: slice_of(recorded, key["topic"], messages, claim) for one, messages in found.items()}
-
-
-def slice_of(recorded: Recording, topic: str, messages: list[tuple[int, int]], claim: Section) -> Recording:
-    """A recording with some messages on a topic, of whose arrays each has one element; and all on other topics."""
-    found = Recording()
-    others = np.setdiff1d(np.arange(len(recorded.times)), recorded.topics[topic])
-    numbers, elements = (np.array(each, np.int64) for each in zip(*messages, strict=True))
-    old = np.append(others, numbers)
-    order = old.argsort(kind="stable")
-    new = np.empty(len(order), np.int64)
-    new[order] = np.arange(len(order))
-    ours = new[len(others) :]
-    found.times, found.first, found.last, found.begins = (
-        recorded.times[old[order]],
-        recorded.first,
-        recorded.last,
-        ours[0],
-    )
-    for name, places in recorded.topics.items():
-        found.topics[name] = ours if name == topic else new[others.searchsorted(places)]
-    for field in (part for part in parts(claim.data) if "path" in part):
-        places, values = recorded.samples[id(field)]
-        if field["topic"] != topic:
-            found.samples[id(field)] = new[others.searchsorted(places)], values
-            continue
-        value_of = dict(zip(places.tolist(), values, strict=True))
-        having = [n for n, place in enumerate(numbers.tolist()) if place in value_of]
-        given = [value_of[numbers[n]] for n in having]
-        is_own = ["own"] in field["path"]
-        some = [each[elements[n]] for n, each in zip(having, given, strict=True)] if is_own else given
-        found.samples[id(field)] = ours[having], column(some)
-    return found
-
-
-def id_of(value: Any) -> Any:
-    """A value as an id: whole numbers are integers, and NaN is none."""
-    value = value.item() if isinstance(value, np.generic) else value
-    if isinstance(value, float) and value.is_integer():
-        return int(value)
-    return None if value != value else value
-
-
-def check_slices(claim: Section, recorded: Recording, head: Section, ends: int) -> str:
-    """Compute what is claimed of each slice, and of all of them; how many there are."""
-    if head.said.keys() & {"rate", "timeout", "signal"}:
-        raise NotCovered("ids at ticks, with a timeout, or in tables")
-    with covered("its ids cannot be computed"):
-        found = slices_of(claim, recorded)
-    stated = claim.slices
-    if claim.said.get("slice", []) != [*found]:
-        raise Refused(f"the ids are {', '.join(found)[:200]}")
-    for one, part in stated.items():
-        try:
-            check_claim(part, found[one], head, ends)
-        except Refused as error:
-            raise Refused(f"slice {one}: {error}") from None
-        claim.lines += part.lines
-    [(until, verdict, decided)] = re.findall(r"^until (.+)\nverdict (.+) (.+)\n\Z", claim.text, re.M)
-    if until != decided or (verdict != "violated" and until != str(ends)):
-        raise Refused(f"the run ends at {ends}")
-    return f"ids: {len(found)}"
-
-
-def check_claim(claim: Section, recorded: Recording, head: Section, ends: int) -> str:
-    """Compute what is claimed of a run that ends at `ends` at the latest; how many instants and lines it has."""
-    if claim.key:
-        return check_slices(claim, recorded, head, ends)
-    verdict, _, decided = claim.one("verdict").partition(" ")
-    until = int(claim.one("until"))
-    if decided != str(until) or (until > ends if verdict in ("violated", "satisfied") else until != ends):
-        raise Refused(f"the run ends at {ends}")
-    problems = []
-    # Where a message has the time at which the session begins, that may have an instant of its own, or not.
-    for apart in (True, False):
-        run = run_of(claim, recorded, head, apart=apart)
-        count, lines = run.lines(until)
-        found = f"letters {count} sha256 {sha256(lines)}\n" if "letters" in claim.said else lines
-        stated = claim.text[claim.text.index("\nsession ") + 1 : claim.text.index("\nuntil ") + 1]
-        pairs = itertools.zip_longest(stated.split("\n"), f"session {run.session}\n{found}".split("\n"), fillvalue="")
-        wrong = [f"stated: {one or 'nothing'}; computed: {other or 'nothing'}" for one, other in pairs if one != other]
-        if (verdict == "not_started") != (count == 0):
-            wrong.append("it has started" if count else "it has not started")
-        if not wrong:
-            claim.lines = [lines] * ("letters" in claim.said)
-            return f"instants: {len(run.times)}, lines: {count}"
-        problems += wrong
-    raise Refused(problems[0])
-
-
-def main(arguments: list[str]) -> int:
-    """What the command line asks for; the exit code."""
-    parser = argparse.ArgumentParser(description="Check that recordings have the letters that an evidence states.")
-    parser.add_argument("evidence", type=Path, help="what `ltlc run --evidence` wrote")
-    parser.add_argument("recording", type=Path, nargs="+", help="what was judged, by its old name")
-    parser.add_argument("--fill", type=Path, help="write the evidence here, with lines in place of their digests")
-    options = parser.parse_args(arguments)
-    try:
-        return check(options.evidence, {path: digests_of(path) for path in options.recording}, options.fill)
-    except (OSError, ValueError) as error:
-        print(f"recorded.py: {error}", file=sys.stderr)
-        return 2
-
-
-def check(evidence: Path, recordings: Mapping[Path, Mapping[str, str]], fill: Path | None) -> int:
-    """Check each document against the recording that has its digests; the exit code."""
-    found, codes = documents(evidence.read_bytes().decode("utf-8")), [0]
-    for document in found:
-        wanted = document.head.digests("recording")
-        if len(found) > 1:
-            print(f"recording {', '.join(wanted)}")
-        path = next((path for path, files in recordings.items() if files == wanted), None)
-        with answered("", print, codes):
-            if path is None:
-                raise Refused(why_missing(wanted, recordings.values()))
-            codes.append(check_document(document, path, print))
-    if fill is not None:
-        fill.write_text("".join(document.filled for document in found), encoding="utf-8", newline="\n")
-    return 1 if 1 in codes else max(codes)
-
-
-def why_missing(wanted: Mapping[str, str], recordings: Iterable[Mapping[str, str]]) -> str:
-    """Why there is no recording with these digests: a file of it is another one, or not there."""
-    given = {name: digest for files in recordings for name, digest in files.items()}
-    names = [name.rpartition(" ")[0] for name, digest in wanted.items() if given.get(name) != digest]
-    if names and any(name.startswith(f"{names[0]} ") for name in given):
-        return f"{names[0]} is another file: it has not the size and the SHA-256 that are written"
-    return f"there is no recording with the files {', '.join(name.rpartition(' ')[0] for name in wanted)}"
+def files_of(path: Path) -> list[Path]:
+    """The files of a recording: of a folder, all bags in it, and what is said of them."""
+    name = re.compile(r"(?i)metadata\.yaml|.*\.(mcap|db3|bag)(\.zstd)?")
+    return sorted(at for at in path.iterdir() if name.fullmatch(at.name)) if path.is_dir() else [path]
 
 
 def digests_of(path: Path) -> dict[str, str]:
-    """The files of a recording, by the names that evidence has for them and their sizes, with their digests."""
-    files, folder, found = files_of(path), f"{path.resolve().name}/" if path.is_dir() else "", {}
-    for at in files:
+    """The digests of the files of a recording, by the names that evidence has for them, and their sizes."""
+    folder, found = f"{path.resolve().name}/" if path.is_dir() else "", {}
+    for at in files_of(path):
         with at.open("rb") as file:
             found[f"{folder}{at.name} {at.stat().st_size}"] = hashlib.file_digest(file, "sha256").hexdigest()
     return found
 
 
-def files_of(path: Path) -> list[Path]:
-    """The files of a recording: of a folder, all bags in it, and what is said of them."""
-    name = re.compile(r"metadata\.yaml|.*\.(mcap|db3|bag)(\.zstd)?", re.I)
-    return sorted(at for at in path.iterdir() if name.fullmatch(at.name)) if path.is_dir() else [path]
+def check_document(document: Document, recordings: list[tuple[dict[str, str], Path]], codes: list[int]) -> None:
+    """Check all claims, print what is found, and add exit codes."""
+    head, wanted = document.head, document.head.digests("recording")
+    paths = [path for files, path in recordings if files == wanted]
+    if not paths:
+        raise Refused(f"no recording has the files, sizes and SHA-256 that are written: {', '.join(wanted)}")
+    for each in document.not_covered:
+        print(": nothing is claimed: ".join(each.split(": ", 1)))
+    if not document.claims:
+        return
+    if ("stamp" in head.said or "timeout" in head.said) and document.not_covered:
+        raise Refused("something is claimed of some properties only, though the run depends on all")
+    recorded = read(paths[0], document)
+    ends, timeout = [recorded.last], head.time("timeout")
+    if timeout is not None:  # so long after the first step of a property
+        runs = [run_of(claim, recorded, head, recorded.last) for claim in document.claims]
+        ends += [int(run[0][0]) + timeout for run in runs if len(run[0])]
+    for claim in document.claims:
+        label = claim.one("property")
+        with answered(f"{label}: ", codes):
+            print(f"{label}: the letters are as stated; {check_claim(claim, recorded, document, min(ends))}")
+
+
+def check_claim(claim: Section, recorded: Recording, document: Document, ends: int) -> str:
+    """Compare what is claimed of a run, or of slices, that end at `ends` at the latest; how much was compared."""
+    for stated in claim.runs:
+        until, is_decided = int(stated["until"]), stated["verdict"] in ("violated", "satisfied")
+        if stated["at"] != stated["until"] or (until > ends if is_decided else until != ends):
+            raise Refused(f"the run ends at {ends}")
+    if not claim.key:
+        return check_run(claim, claim.runs[0], recorded, document)
+    if document.head.said.keys() & {"rate", "timeout", "signal"}:
+        raise NotImplementedError("ids at ticks, with a timeout, or in tables")
+    slices, found = claim.runs[:-1], slices_of(claim, recorded)
+    if [stated["id"] for stated in slices] != [*found]:
+        raise Refused(f"the ids are {', '.join(found)[:200]}")
+    for stated in slices:
+        check_run(claim, stated, found[stated["id"]], document)
+    return f"ids: {len(found)}"
+
+
+def check_run(claim: Section, stated: dict[str, str], recorded: Recording, document: Document) -> str:
+    """Compare the letters of a run with those that are stated; how many instants and lines it has."""
+    until, begins, problems = int(stated["until"]), not is_waited_for(claim.atoms), []
+    times, letters, news, session = run_of(claim, recorded, document.head, until)
+    end = int(times.searchsorted(until, "right"))
+    # Where a message has the time at which the session begins, that may have an instant of its own, or not.
+    is_twice = begins and "rate" not in document.head.said and len({*times[:2].tolist()}) < len(times[:2])
+    for start in range(2 if is_twice else 1):
+        count, lines = lines_of(times[start:end], letters[start:end], news)
+        found = f"letters {count} sha256 {sha256(lines)}\n" if stated["letters"][:1] == "l" else lines
+        texts = f"session {claim.one('session')}\n{stated['letters']}", f"session {session}\n{found}"
+        if texts[0] == texts[1]:
+            document.computed[found] = lines
+            return f"instants: {len(times)}, lines: {count}"
+        pairs = itertools.zip_longest(*(text.split("\n") for text in texts), fillvalue="")
+        problems += [f"stated: {one or 'nothing'}; computed: {two or 'nothing'}" for one, two in pairs if one != two]
+    raise Refused(f"slice {stated['id']}: {problems[0]}" if stated["id"] else problems[0])
+
+
+def slices_of(claim: Section, recorded: Recording) -> dict[str, Recording]:
+    """The slices by their ids, in order: messages, once for each element that has the id, and all on other topics."""
+    [key], own = claim.key, [what for what, field in fields(claim.atoms).items() if ["own"] in field["path"]]
+    places, values = recorded.samples[id(key)]
+    lengths = [dict(zip(at.tolist(), map(len, of), strict=True)) for at, of in map(recorded.samples.__getitem__, own)]
+    messages: dict[str, list[tuple[int, int]]] = {}
+    for place, ids in zip(places.tolist(), values.tolist(), strict=True):
+        some = ids.tolist() if isinstance(ids, np.ndarray) else [ids]
+        for element, value in enumerate(some[: min([len(some), *(each.get(place, 0) for each in lengths)])]):
+            whole = int(value) if isinstance(value, float) and value.is_integer() else value
+            if whole == whole:  # NaN is no id
+                messages.setdefault(json.dumps(whole), []).append((place, element))
+    others, found = np.setdiff1d(np.arange(len(recorded.times)), recorded.topics[key["topic"]]), {}
+    for one, pairs in messages.items():
+        own_places, elements = np.array(pairs, np.int64).T
+        old = np.append(others, own_places)
+        order = old.argsort(kind="stable")
+        which = np.append(np.full(len(others), -1), elements)[order]
+        found[one] = recorded.part(old[order], recorded.first, recorded.last)
+        found[one].begins = int(np.argmax(which >= 0))
+        for what in own:
+            there, arrays = found[one].samples[what]
+            some = [array[n : n + 1].tolist()[0] for array, n in zip(arrays, which[there], strict=True)]
+            found[one].samples[what] = there, column(some)
+    return found
 
 
 if __name__ == "__main__":

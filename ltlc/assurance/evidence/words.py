@@ -15,15 +15,7 @@ from ltlc.semantics.ltl import to_text
 
 Json = object
 
-_RELATIONS = {
-    "<": "is less than",
-    "<=": "is at most",
-    "==": "equals",
-    "!=": "differs from",
-    ">=": "is at least",
-    ">": "is greater than",
-    "same": "is",
-}
+_RELATIONS = {"<": "is less than", "<=": "is at most", "==": "equals", ">=": "is at least", ">": "is greater than"}
 
 
 def settings_in_words(head: Head) -> Iterator[str]:
@@ -52,7 +44,7 @@ def atoms_in_words(claim: Claim) -> Iterator[tuple[str, str, str]]:
         )
         yield name, f"scope {scope.number} is open", ", ".join(spans) or "never"
     if claim.key is not None:
-        yield "", "ids", _value(claim.key)
+        yield "", "ids", in_words(claim.key)
     for stated in claim.counts:
         of = counted(stated, names)
         within = "so far" if of.within is None else f"in the last {duration_text(of.within)}"
@@ -61,29 +53,24 @@ def atoms_in_words(claim: Claim) -> Iterator[tuple[str, str, str]]:
         yield "", stated.name, f"{to_text(of.operand)} {how} {of.times} times or more {within}{presumed}"
 
 
-def in_words(condition: Json) -> str:
-    """A condition, or a predicate that is made of conditions."""
+def in_words(condition: Json, elements: Sequence[str] = ()) -> str:
+    """A condition or another expression; in the predicate of a count, `elements` are the words for these."""
+
+    def words(of: Json) -> str:
+        return in_words(of, elements)
+
     match condition:
         case bool(truth):
             return "true" if truth else "false"
-        case {"not": operand, **rest} if not rest:
-            return f"not ({in_words(operand)})"
-        case {"and": [*parts], **rest} if not rest:
-            return " and ".join(f"({in_words(part)})" for part in parts)
-        case {"or": [*parts], **rest} if not rest:
-            return " or ".join(f"({in_words(part)})" for part in parts)
-        case {"op": "true", "left": left, **rest} if not rest:
-            return _value(left)
-        case {"op": str(op), "left": left, "right": right, **rest} if op in _RELATIONS and rest.keys() <= {"margin"}:
-            margin = f", with a margin of {_value(rest['margin'])}" if rest else ""
-            return f"{_value(left)} {_RELATIONS[op]} {_value(right)}{margin}"
-        case _:
-            return _as_it_is(condition)
-
-
-def _value(of: Json) -> str:
-    """An expression."""
-    match of:
+        case {"call": str(name), "of": [*operands], **rest} if not rest:
+            return _call(name, operands, elements)
+        case {"element": int(number), **rest} if not rest and 0 <= number < len(elements):
+            return elements[number]
+        case {"count": predicate, "over": [*lists], "beside": [*beside], **rest} if not rest:
+            arrays = [[words(array) for array in _list(one)] for one in lists]
+            inner = [*(f"an element of {each}" for one in arrays for each in one), *map(words, beside)]
+            over = f" over ({') and ('.join(map(', '.join, arrays))})"
+            return f"the number of elements with ({in_words(predicate, inner)}){over}"
         case {"topic": str(topic), "type": str(type_), "path": [*path], **rest} if not rest:
             return f"{_path(path)} of {topic} ({type_})" if path else f"{topic} ({type_})"
         case {"message": [*topics], **rest} if not rest:
@@ -91,44 +78,48 @@ def _value(of: Json) -> str:
         case {"new": [*topics], **rest} if not rest:
             return f"a message with a value comes on {' or '.join(map(str, topics))}"
         case {"ago": ago, "of": samples, **rest} if not rest:
-            return f"[{_value(samples)}, {ago} samples before]"
+            return f"[{words(samples)}, {ago} samples before]"
         case {"recent": ago, "of": samples, **rest} if not rest:
-            return f"[the latest sample and the {ago} before it of {_value(samples)}]"
+            return f"[the latest sample and the {ago} before it of {words(samples)}]"
         case {"slope": True, "of": samples, **rest} if not rest:
-            return f"[the change per second of {_value(samples)}]"
+            return f"[the change per second of {words(samples)}]"
         case {"sampled": value, **rest} if rest.keys() <= {"when"}:
-            return f"[{_value(value)}, when {in_words(rest['when'])}]" if rest else f"[{_value(value)}, as sampled]"
+            return f"[{words(value)}, when {in_words(rest['when'])}]" if rest else f"[{words(value)}, as sampled]"
         case {"instead": value, "of": samples, **rest} if rest.keys() <= {"news"}:
             news = f", or without a message on {' or '.join(map(str, _list(rest['news'])))}" if rest else ""
-            return f"[{_value(samples)}; {_value(value)} before it has one{news}]"
+            return f"[{words(samples)}; {words(value)} before it has one{news}]"
         case {"opening": value, "scope": number, **rest} if not rest:
-            return f"[{_value(value)} when scope {_value(number)} opened]"
-        case {"slice": [first, last], "of": array, **rest} if not rest:
-            said = f"from {_end(first, 'the first')} up to, not including, {_end(last, 'the end')}"
-            return f"[the elements of {_value(array)} {said}]"
-        case {"element": array, **rest} if not rest:
-            return f"an element of {_value(array)}"
-        case {"count": predicate, **rest} if rest.keys() <= {"over"}:
-            lists = [", ".join(map(_value, _list(one))) for one in _list(rest.get("over", []))]
-            over = f" over ({') and ('.join(lists)})" if lists else ""
-            return f"the number of elements with ({in_words(predicate)}){over}"
-        case {"predicate": predicate, **rest} if not rest:
-            return f"whether ({in_words(predicate)})"
-        case {"call": str(name), "of": [*operands], **rest} if not rest:
-            return _call(name, operands)
-        case {"number": str(number), **rest} if not rest:
-            return number
+            return f"[{words(value)} when scope {words(number)} opened]"
         case list():
-            return f"({', '.join(map(_value, of))})"
+            return f"({', '.join(map(words, condition))})"
         case _:
-            return _as_it_is(of)
+            return _as_it_is(condition)
 
 
-def _call(name: str, operands: Sequence[Json]) -> str:
-    told = [_value(each) for each in operands]
-    if name == "neg":
-        return f"-({told[0]})"
-    return f"({f' {name} '.join(told)})" if name in "+-*/" and len(told) > 1 else f"{name}({', '.join(told)})"
+def _call(name: str, operands: Sequence[Json], elements: Sequence[str]) -> str:
+    said = [in_words(each, elements) for each in operands]
+    match name, operands:
+        case "<=", [{"call": "abs", "of": [{"call": "gap", "of": [one, other]}]}, _]:
+            return f"{in_words(one, elements)} equals {in_words(other, elements)}, with a margin of {said[1]}"
+        case _, [_, _] if name in _RELATIONS:
+            return f"{said[0]} {_RELATIONS[name]} {said[1]}"
+        case "not", [_]:
+            return f"not ({said[0]})"
+        case "and" | "or", [_, *_]:
+            return f" {name} ".join(f"({each})" for each in said)
+        case "number", [str(number)]:
+            return number
+        case "double", [_]:
+            return f"{said[0]} as a double"
+        case "neg", [_]:
+            return f"-({said[0]})"
+        case "+" | "-" | "*" | "/", [_, _, *_]:
+            return f"({f' {name} '.join(said)})"
+        case "slice", [_, first, last]:
+            ends = f"from {_end(first, 'the first')} up to, not including, {_end(last, 'the end')}"
+            return f"[the elements of {said[0]} {ends}]"
+        case _:
+            return f"{name}({', '.join(said)})"
 
 
 def _path(steps: Sequence[Json]) -> str:

@@ -117,7 +117,7 @@ def _judge(judge: Judge, found: Found, options: argparse.Namespace, page: Page |
 def _is_complete(cutting: Cutting | None, bundle: Bundle | None, outcome: Outcome) -> bool:
     """Whether an earlier campaign has left all that is asked for; otherwise, the recording is judged again."""
     is_cut = cutting is None or cutting.has(outcome.report.get("cut"), outcome.extracts)
-    return is_cut and (bundle is None or bundle.has(outcome.place))
+    return is_cut and (bundle is None or bundle.has(outcome.place, outcome.report.get("evidence")))
 
 
 def _digest(judge: Judge, options: argparse.Namespace) -> str:

@@ -9,7 +9,7 @@ from os import SEEK_END
 from pathlib import Path
 from typing import Self
 
-from ltlc.assurance.evidence.document import HEADER, printed
+from ltlc.assurance.evidence.document import HEADER, digest, printed
 from ltlc.assurance.evidence.parsing import UnreadableEvidence, parsed
 from ltlc.base.provenance import FileDigest
 from ltlc.monitoring.campaigns.places import Location, is_address
@@ -46,16 +46,16 @@ class Bundle:
         self._of_place: dict[str, str] = {}
         self.lacking: list[str] = []
 
-    def has(self, place: Location) -> bool:
-        """Whether there is evidence of the recording at `place` as it is now."""
+    def has(self, place: Location, sha256: object) -> bool:
+        """Whether there is evidence of the recording at `place` as it is now, with the SHA-256 that it had."""
         if not self._known or is_address(place.name):
             return False
         try:
             files = Digests(Path(place.name)).files()
         except OSError:
             return False
-        self._of_place[place.name] = self._known.get(files, "")
-        return bool(self._of_place[place.name])
+        self._of_place[place.name] = text = self._known.get(files, "")
+        return digest(text) == sha256
 
     def keep(self, place: Location) -> None:
         """Take over what there `has` been of the recording at `place`."""

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-from ltlc.assurance.evidence.document import printed
+from ltlc.assurance.evidence.document import digest, printed
 from ltlc.base.codes import diagnostic
 from ltlc.base.diagnostics import Diagnostic
 from ltlc.base.source import Source
@@ -113,6 +113,8 @@ def of_report(place: Location, found: RunReport, seconds: float) -> Outcome:
         document["properties"] = []
     diagnostics = tuple(_renamed(each, found.recording, place.name) for each in found.diagnostics)
     evidence = "" if found.evidence is None else printed(found.evidence)
+    if evidence:
+        document["evidence"] = digest(evidence)
     return Outcome(place, document, properties, remarks, diagnostics, seconds, evidence=evidence)
 
 

@@ -12,7 +12,7 @@ from ltlc.runtime.properties import Change
 from ltlc.runtime.sampling import Value
 from ltlc.runtime.session import Session
 from ltlc.runtime.slice_ids import Ids, Slice
-from ltlc.runtime.slice_keys import Cut, Id, Row
+from ltlc.runtime.slice_keys import Cut, Id, Part, Row
 from ltlc.runtime.slice_steps import Slices
 from ltlc.runtime.slices import Slicing
 from ltlc.runtime.tracking import Track
@@ -59,6 +59,11 @@ class LetteredSlices(Slices):
     def _ending(self) -> list[Slice]:
         """The slices that were decided at this very time: what comes at it has lines, too."""
         return [one for one, time in self._ended.values() if time == self._now]
+
+    def _share(self, time: int, part: Part, given: Sequence[Value]) -> None:
+        super()._share(time, part, given)
+        for one in self._ending():
+            self.cut.share(one.known)
 
     def _born(self, time: int, id_: Id) -> Slice:
         self._lettered[id_] = self._new_letters()
