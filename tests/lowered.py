@@ -13,7 +13,9 @@ from edges import drawn
 from program_reference import Run
 from stepping import from_text
 
+from ltlc.base.source import Source
 from ltlc.compiler import Compiled
+from ltlc.frontend.language import load_text
 from ltlc.program.expressions import Literal, parts
 from ltlc.program.machine import Machine
 from ltlc.program.types import Type
@@ -95,6 +97,12 @@ def texts() -> Iterator[str]:
     yield signals + "".join(f"sentence{number}: {each}" for number, each in enumerate(sentences))
     for path in sorted((PROJECT / "examples").rglob("*.txt")):
         yield path.read_text(encoding="utf-8")
+
+
+def labels() -> list[str]:
+    """The name of each property, for which nothing is compiled: every process that collects tests asks."""
+    specifications = [load_text(Source("props.txt", text))[0] for text in texts()]
+    return [each.label for of in specifications if of is not None for each in of.properties]
 
 
 @cache

@@ -12,7 +12,7 @@ from conditions_support import CONDITIONS, DECLARED
 from edges import drawn as in_range
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from lowered import cases, shown
+from lowered import cases, labels, shown
 from machine_mutants import expressions, mutants
 from openings_support import drawn
 from program_reference import is_nan, value
@@ -31,14 +31,14 @@ from ltlc.program.expressions import Apply, Count, Expression
 from ltlc.program.functions import Primitive
 from ltlc.program.machine import Machine
 
-LABELS = [machine.label for machine, _, _ in cases()]
+LABELS = labels()
 
 
 def compared(machine: Machine, of: Compiled) -> Equal | Difference:
     return compare(machine, Judged(of.specification, of.formula, of.monitor))
 
 
-@pytest.mark.parametrize("number", range(len(cases())), ids=LABELS)
+@pytest.mark.parametrize("number", range(len(LABELS)), ids=LABELS)
 def test_what_a_property_is_lowered_to_is_its_monitor(number: int) -> None:
     machine, of, _ = cases()[number]
     assert isinstance(compared(machine, of), Equal)
@@ -64,7 +64,7 @@ def test_random_properties_with_values_at_openings_are_lowered_to_their_monitors
     assert isinstance(compared(of.machine, of), Equal)
 
 
-@pytest.mark.parametrize("number", range(len(cases())), ids=LABELS)
+@pytest.mark.parametrize("number", range(len(LABELS)), ids=LABELS)
 def test_a_machine_that_is_changed_is_refused_or_does_the_same(number: int) -> None:
     """Some of its changes; `benchmarks/lowering.py` tries all."""
     machine, of, _ = cases()[number]
