@@ -65,23 +65,23 @@ def _methods(cls: type, slots: bool, eq: bool, order: bool) -> Iterator[tuple[st
 
 
 def _init(cls: type, names: dict[str, object]) -> str:
-    """The text of `__init__`; what it speaks of is added to `names`."""
-    names |= {"_set": object.__setattr__, "_missing": MISSING}
+    """The text of `__init__`; what it speaks of is added to `names`, as no field can be called in a class."""
+    names |= {"__set": object.__setattr__, "__missing": MISSING}
     positional, keywords, body = ["self"], ["*"], [" pass"]
     for each in fields(cls):
         given = value = each.name
         if each.default is not MISSING:
-            names[default := f"_{each.name}"] = each.default
+            names[default := f"__default_{each.name}"] = each.default
             given, absent = f"{each.name}={default}", default
         elif each.default_factory is not MISSING:
-            names[factory := f"_{each.name}"] = each.default_factory
-            given, absent = f"{each.name}=_missing", f"{factory}()"
-            value = f"{absent} if {each.name} is _missing else {each.name}"
+            names[factory := f"__default_{each.name}"] = each.default_factory
+            given, absent = f"{each.name}=__missing", f"{factory}()"
+            value = f"{absent} if {each.name} is __missing else {each.name}"
         elif not each.init:
             continue
         if each.init:
             (keywords if each.kw_only else positional).append(given)
-        body.append(f" _set(self, {each.name!r}, {value if each.init else absent})")
+        body.append(f" __set(self, {each.name!r}, {value if each.init else absent})")
     if hasattr(cls, "__post_init__"):
         body.append(" self.__post_init__()")
     parameters = positional + keywords * (len(keywords) > 1)

@@ -64,6 +64,15 @@ def classes(decorator: Callable[..., Any], **options: bool) -> Classes:
             object.__setattr__(self, "total", sum(self.parts))
 
     @decorated
+    class Alike:
+        """Fields whose names are alike, and like those of what sets them."""
+
+        set: list[int] = field(default_factory=list)
+        _set: int = 1
+        missing: int = 2
+        _missing: int = 3
+
+    @decorated
     class Own:
         """Methods of its own."""
 
@@ -87,7 +96,7 @@ def classes(decorator: Callable[..., Any], **options: bool) -> Classes:
         def __eq__(self, other: object) -> bool:
             return self is other
 
-    return {each.__name__: each for each in (Empty, Point, Named, Sum, Own, Equal)}
+    return {each.__name__: each for each in (Empty, Point, Named, Sum, Alike, Own, Equal)}
 
 
 def instances(of: Classes) -> list[Any]:
@@ -95,7 +104,16 @@ def instances(of: Classes) -> list[Any]:
     numbers = [(x, y) for x in ("0", "1", "nan") for y in ((), ("0.5",), ("nan",))]
     points = [of["Point"](float(x), *map(float, y)) for x, y in numbers]  # each NaN is another, as in any two messages
     named = [of["Named"](1.0, names=["a"], last=1), of["Named"](1.0, 0.5, ["b"], "c", last=1), of["Named"](1.0)]
-    rest = [of["Empty"](), of["Empty"](), of["Sum"]((1, 2)), of["Sum"](parts=(3,)), of["Own"](1), of["Own"](11)]
+    rest = [
+        of["Empty"](),
+        of["Empty"](),
+        of["Sum"]((1, 2)),
+        of["Sum"](parts=(3,)),
+        of["Own"](1),
+        of["Own"](11),
+        of["Alike"](),
+        of["Alike"]([1], 2, 3, 4),
+    ]
     return [*points, *named, *rest, of["Equal"](1), of["Equal"](1)]
 
 
