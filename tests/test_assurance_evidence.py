@@ -128,6 +128,16 @@ def test_a_claim_that_is_changed_is_refused(change: Change, tmp_path: Path) -> N
     assert "REFUSED" in lines[0]
 
 
+def test_a_first_step_that_is_left_out_is_refused_though_the_next_has_its_time(tmp_path: Path) -> None:
+    rows = [(BEGINNING, "/x", make("std_msgs/msg/Float64", data=value)) for value in (3.0, 1.0)]
+    document = evidence_of(specification(["never x > 2"]), write_bag(tmp_path / "bag", rows))
+    claim = claim_of(document, "c0")
+    assert claim.letters == (Line(BEGINNING, (0,)), Line(BEGINNING, ()))
+    fine = replace(claim, letters=claim.letters[1:], verdict=Verdict.PRESUMABLY_SATISFIED)
+    code, lines = said_of(replace(document, properties=(fine,)), tmp_path / "bag")
+    assert (code, lines[0].partition(" stated")[0]) == (1, "c0: REFUSED:")
+
+
 def test_a_recording_with_another_value_is_refused_if_a_letter_changes_and_the_digests_are_set_right(
     tmp_path: Path,
 ) -> None:
