@@ -182,6 +182,14 @@ def test_a_type_that_was_read_without_the_digest_of_its_definition_is_refused(tm
     )
 
 
+def test_messages_that_are_defined_otherwise_than_written_are_refused(tmp_path: Path) -> None:
+    bag = write_bag(tmp_path / "bag", floats("/x", 1.0, 3.0))
+    document = evidence_of(specification(["never x > 2"]), bag)
+    definitions = tuple((name, "0" * 64) for name, _ in document.head.definitions)
+    code, [line] = said_of(replace(document, head=replace(document.head, definitions=definitions)), bag)
+    assert (code, line.partition(",")[0]) == (1, "REFUSED: it has no messages")
+
+
 @pytest.mark.parametrize(
     "condition",
     [
