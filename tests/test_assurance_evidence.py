@@ -128,6 +128,16 @@ def test_a_claim_that_is_changed_is_refused(change: Change, tmp_path: Path) -> N
     assert "REFUSED" in lines[0]
 
 
+def test_a_first_step_that_is_left_out_is_refused_though_the_next_has_its_time(tmp_path: Path) -> None:
+    rows = [(BEGINNING, "/x", make("std_msgs/msg/Float64", data=value)) for value in (3.0, 1.0)]
+    document = evidence_of(specification(["never x > 2"]), write_bag(tmp_path / "bag", rows))
+    claim = claim_of(document, "c0")
+    assert claim.letters == (Line(BEGINNING, (0,)), Line(BEGINNING, ()))
+    fine = replace(claim, letters=claim.letters[1:], verdict=Verdict.PRESUMABLY_SATISFIED)
+    code, lines = said_of(replace(document, properties=(fine,)), tmp_path / "bag")
+    assert (code, lines[0].partition(" stated")[0]) == (1, "c0: REFUSED:")
+
+
 def test_a_recording_with_another_value_is_refused_if_a_letter_changes_and_the_digests_are_set_right(
     tmp_path: Path,
 ) -> None:
@@ -170,6 +180,14 @@ def test_a_type_that_was_read_without_the_digest_of_its_definition_is_refused(tm
         1,
         ["REFUSED: /x has std_msgs/msg/Float64, and how std_msgs/msg/Float64 is defined has to be written"],
     )
+
+
+def test_messages_that_are_defined_otherwise_than_written_are_refused(tmp_path: Path) -> None:
+    bag = write_bag(tmp_path / "bag", floats("/x", 1.0, 3.0))
+    document = evidence_of(specification(["never x > 2"]), bag)
+    definitions = tuple((name, "0" * 64) for name, _ in document.head.definitions)
+    code, [line] = said_of(replace(document, head=replace(document.head, definitions=definitions)), bag)
+    assert (code, line.partition(",")[0]) == (1, "REFUSED: it has no messages")
 
 
 @pytest.mark.parametrize(
