@@ -66,7 +66,7 @@ class Course:
         self.is_settled = True
         self.scopes = tuple(map(Episodes, property_.scopes))
         self.judged_on: Sequence[Value] = ()
-        self._lapsed: tuple[int | None, ...] = (None,) * len(property_.clocks)
+        self._lapsed: tuple[int | None, ...] = ()
         self._passed: tuple[int, ...] = ()
         self._invalid_last: str | None = None
         self._renewed: tuple[Monitor, ...] = ()
@@ -184,7 +184,7 @@ class Course:
         if self.property.counts_bounds:
             self._count_bounds(before[1])
         if self.property.recalls:
-            pairs = zip(before[1], self._lapsed, strict=True)
+            pairs = zip(before[1], self.lapsed(), strict=True)
             last = moment.time - 1
             self._lapsed = tuple(due if due == last else was for due, was in pairs)
         return change
@@ -298,6 +298,10 @@ class Course:
         """How many bounds of each clock have passed."""
         return self._passed or (0,) * len(self.property.clocks)
 
+    def lapsed(self) -> tuple[int | None, ...]:
+        """When each clock was due that a clock step took last; None if none did."""
+        return self._lapsed or (None,) * len(self.property.clocks)
+
     def _change(
         self,
         before: Before,
@@ -342,7 +346,7 @@ class Course:
         self, before: Before, moment: Moment, values: Sequence[Value]
     ) -> tuple[Condition, ...]:
         of, passed = self.property, self.passed()
-        return because(of, before, moment, values, passed, self._lapsed)
+        return because(of, before, moment, values, passed, self.lapsed())
 
     def repeat(self, times: int, at: Iterable[int]) -> None:
         """Judge the last step `times` more times, `at` the times that it gives.
