@@ -147,6 +147,14 @@ def test_a_broken_assumption_loses_and_from_then_on_the_first_fallback_is_sent(t
     assert deeds(document)[1:] == [(3, "lost", None, None, lost), (4, "changed", 0.1, 0, f"the guard has lost: {lost}")]
 
 
+def test_the_page_says_what_the_guard_did(tmp_path: Path) -> None:
+    page = tmp_path / "page.html"
+    guarded(tmp_path, ASKED + NEAR, [{"time": 1, "scan": [0.3]}, {"time": 2, "asked": 1}], "--report", str(page))
+    shown = page.read_text(encoding="utf-8")
+    assert "guard of /cmd_vel: 0 passed, 1 changed, 0 held back, 0 sent by itself" in shown
+    assert "+1 s  changed speed = 1.0 to <code>stop</code>: it would violate <code>q</code>" in shown
+
+
 def test_two_guards_hear_what_the_other_one_sends(tmp_path: Path) -> None:
     text = ASKED + "decl wanted /grip_raw std_msgs/Float64.data\n" + EXAMPLES["two guards"].text
     rows: list[Row] = [{"time": 1, "asked": 0}, {"time": 2, "wanted": -1}, {"time": 3, "asked": 1}]
