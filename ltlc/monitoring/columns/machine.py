@@ -152,7 +152,8 @@ def machine(
         return None
     events = [_events(slot, holds) for slot in slots]
     states, table, opened = [(-1, 0)], [], []
-    if control.clocks:  # Clocks that come due lead to states that steps alone do not.
+    goes_on = (edges[is_final] != np.flatnonzero(is_final)[:, None]).any()  # after a violation
+    if control.clocks or goes_on:  # Clocks that come due lead to states that steps alone do not, and so do violations.
         states += [(state, bits) for state in range(len(is_final)) for bits in range(1 << len(slots))]
     numbers = {state: number for number, state in enumerate(states)}
     for state, open_ in states:
