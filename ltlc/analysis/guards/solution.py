@@ -16,9 +16,6 @@ from ltlc.semantics.arenas import Arena, Joint, Outcome, Region, Ticks
 from ltlc.semantics.diagrams import Diagram, formulas
 from ltlc.semantics.ltl import Atom
 
-Rests = Mapping[Joint, Diagram]
-"""For each joint place the letters at which the guards may rest."""
-
 
 class TooManyPlacesError(RuntimeError):
     """The game has more joint places than it may."""

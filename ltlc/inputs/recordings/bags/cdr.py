@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from ltlc.dataclass import dataclass
 from ltlc.inputs.messages.definitions import STRINGS, FieldType, MessageTypes
 from ltlc.inputs.recordings.bags.choices import Choice, Path, Tree, in_order, tree
-from ltlc.inputs.recordings.bags.messages import Messages, gathered
+from ltlc.inputs.recordings.bags.messages import Messages, gathered, numbers_at
 from ltlc.inputs.recordings.bags.passing import Passing, is_worth
 from ltlc.inputs.recordings.bags.scalars import SCALARS, MisfitError
 from ltlc.inputs.recordings.blocks import MOST_ELEMENTS, Array, Places, Ragged, Samples
@@ -189,10 +189,7 @@ class _Walk:
 
     def _at(self, places: Places, kind: str) -> Array:
         """The numbers at `places` in the data."""
-        dtype = np.dtype(self._order + kind)
-        anywhere = np.ndarray((max(0, len(self._data) - dtype.itemsize + 1),), dtype, self._data, 0, (1,))
-        found: Array = anywhere[places]
-        return found
+        return numbers_at(self._data, places, self._order + kind)
 
     def _scalar(self, cursor: _Cursor, base: str, wanted: Tree) -> dict[Path, Samples]:
         size = np.dtype(SCALARS[base]).itemsize

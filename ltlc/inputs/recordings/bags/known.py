@@ -12,6 +12,7 @@ from ltlc.inputs.recordings import open_recording
 from ltlc.inputs.recordings.bags import BagRecording
 from ltlc.inputs.recordings.bags.folders import is_bag, is_flight_log, opened
 from ltlc.inputs.recordings.bags.messages import PX4_MESSAGES, Topic
+from ltlc.inputs.recordings.fence import fenced
 from ltlc.inputs.recordings.rows import RecordingError
 
 Declared = Callable[[], Sequence[tuple[str, str]]]
@@ -78,25 +79,27 @@ def _finite(messages: Mapping[str, Message]) -> set[str]:
     return found
 
 
-def _read_bag(path: Path) -> tuple[dict[str, Message], list[BadPath]]:
+def _read_bag(path: Path, declared: Declared = list) -> tuple[dict[str, Message], list[BadPath]]:
     """What the bag at `path` defines, or why that is nothing."""
     try:
-        recording = open_recording(path, {})
+        found = messages_in(_topics_of(path, declared).values())
     except RecordingError as error:
         return {}, [BadPath(str(path), f"cannot be read: {error.diagnostic.message}")]
-    assert isinstance(recording, BagRecording)
-    found = messages_in(recording.topics.values())
     return found, [] if found else [BadPath(str(path), "is a bag that defines no messages")]
 
 
-def _read_log(path: Path, declared: Iterable[tuple[str, str]]) -> tuple[dict[str, Message], list[BadPath]]:
-    """What the flight log at `path` defines, also under the names that the types of its topics have where declared."""
-    types = {topic: full_name(name if "/" in name else f"{PX4_MESSAGES}/{name}") for topic, name in declared}
-    try:
-        with opened(path, types) as log:
-            return messages_in(log.topics.values()), []
-    except RecordingError as error:
-        return {}, [BadPath(str(path), f"cannot be read: {error.diagnostic.message}")]
+def _topics_of(path: Path, declared: Declared) -> Mapping[str, Topic]:
+    """What a bag says of its topics; of a flight log also under the types that these are `declared` with.
+
+    Raises RecordingError.
+    """
+    if is_flight_log(path):
+        types = {topic: full_name(name if "/" in name else f"{PX4_MESSAGES}/{name}") for topic, name in declared()}
+        with fenced(path, "LTL811"), opened(path, types) as log:
+            return log.topics
+    recording = open_recording(path, {})
+    assert isinstance(recording, BagRecording)
+    return recording.topics
 
 
 def _recorded(
@@ -115,7 +118,7 @@ def _recorded(
             known = MessageTypes({**types.messages, **found})
             if all(known.find(name) for name in names):
                 break
-        more, problems = _read_log(path, declared()) if is_flight_log(path) else _read_bag(path)
+        more, problems = _read_bag(path, declared)
         found = more | found
         unread += problems
     return found, unread

@@ -143,6 +143,14 @@ def batch_of(data: Sequence[bytes | memoryview], times: _Integers, places: _Inte
     return Messages(np.asarray(times, np.int64), np.asarray(places, np.int64), joined, sizes.cumsum() - sizes, sizes)
 
 
+def numbers_at(data: Array, places: Places, kind: str) -> Array:
+    """The numbers of a kind, such as `<u4`, at these places in `data`. Raises IndexError beyond its end."""
+    dtype = np.dtype(kind)
+    anywhere = np.ndarray((max(0, len(data) - dtype.itemsize + 1),), dtype, data, 0, (1,))
+    found: Array = anywhere[places]
+    return found
+
+
 def gathered(data: Array, starts: Places, sizes: Places) -> Array:
     """The bytes of `data` from each of `starts` on, side by side; all have to be there."""
     size = int(sizes[0]) if sizes.size else 0

@@ -34,6 +34,7 @@ from ltlc.inputs.recordings.bags.messages import (
     Topic,
     batch_of,
     gathered,
+    numbers_at,
     span_of,
 )
 from ltlc.inputs.recordings.bags.ulog_layout import LITTLE_ENDIAN, TYPES, Layout, is_padding
@@ -108,7 +109,7 @@ class ULogStorage:
         times = np.zeros(len(log.places), np.int64)
         for (format, _), chosen in every.items():
             known = chosen[: chosen.searchsorted(len(times))]
-            moments = records.at(self._data, log.places[known] + BODY + layouts[format].time, "u8")
+            moments = numbers_at(self._data, log.places[known] + BODY + layouts[format].time, "<u8")
             times[known] = np.minimum(moments, LATEST // MICROSECOND).astype(np.int64) * MICROSECOND
         is_old = times < log.begin - RECENT
         times[is_old] = times[~is_old].min(initial=log.begin)

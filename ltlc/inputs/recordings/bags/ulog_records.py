@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltlc.dataclass import dataclass
+from ltlc.inputs.recordings.bags.messages import numbers_at
 from ltlc.inputs.recordings.blocks import Array, Places
 from ltlc.runtime.times import SECOND
 from ltlc.semantics.durations import Nanoseconds
@@ -85,21 +86,13 @@ class Log:
     damage: str = ""
 
 
-def at(data: Array, places: Places, kind: str) -> Array:
-    """The numbers of a kind, little-endian, at these places."""
-    dtype = np.dtype(f"<{kind}")
-    anywhere = np.ndarray((max(0, len(data) - dtype.itemsize + 1),), dtype, data, 0, (1,))
-    found: Array = anywhere[places]
-    return found
-
-
 def read(data: Array) -> Log:
     """The log that these bytes are. Raises DamageError if they are none."""
     if data[: len(MAGIC)].tobytes() != MAGIC or len(data) < BEGIN:
         raise DamageError("it does not begin as one")
     log = Log(int.from_bytes(data[8:BEGIN].tobytes(), "little") * MICROSECOND)
     places, log.damage = _heads(data, _sections(data))
-    sizes, kinds = at(data, places, "u2").astype(np.int64), data[places + 2]
+    sizes, kinds = numbers_at(data, places, "<u2").astype(np.int64), data[places + 2]
     is_data = kinds == _DATA
     wrong = np.flatnonzero(~np.isin(kinds, _KINDS) | (is_data & (sizes < BODY - HEAD)))
     if wrong.size:
@@ -111,7 +104,7 @@ def read(data: Array) -> Log:
         except (ValueError, IndexError, struct.error):
             raise DamageError(f"the message at byte {place} is malformed") from None
     log.places, log.sizes = places[is_data], sizes[is_data] - (BODY - HEAD)
-    log.numbers = at(data, log.places + HEAD, "u2")
+    log.numbers = numbers_at(data, log.places + HEAD, "<u2")
     return log
 
 
