@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 from collections.abc import Callable
 from pathlib import Path
-from time import sleep
 from typing import Any
 
 import pytest
@@ -134,6 +133,7 @@ def test_they_are_judged_alike_live(folder: Path, network: Network, tmp_path: Pa
     from std_msgs.msg import Float64, Int32
 
     stated = "\n".join(f"p{n}: {each}" for n, each in enumerate(EXAMPLES)).replace("3 s", "500 ms")
+    stated += "".join(f"\nheard_{name}: eventually new {name}" for _, name, _ in DRIVE[:3])
     publishers = {
         name: network.publisher(Int32 if name == "st" else Float64, f"/{name}") for name in ("st", "hps", "cx")
     }
@@ -142,7 +142,10 @@ def test_they_are_judged_alike_live(folder: Path, network: Network, tmp_path: Pa
         for _, name, value in DRIVE[:3]:
             publisher = publishers[name]
             publisher.publish(Int32(data=int(value)) if name == "st" else Float64(data=float(value)))
-            sleep(0.1)
+            # Two messages that wait on different topics are taken in either order.
+            network.wait_until(
+                lambda name=name: (f"heard_{name}", "satisfied") in node.changes, f"the message of {name}"
+            )
         network.wait_until(lambda: {("p0", "violated"), ("p2", "violated")} <= set(node.changes), "what is violated")
         assert node.end() == 1
     (run_,) = node.runs
