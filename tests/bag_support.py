@@ -24,8 +24,23 @@ OWN = {
     "nav2_msgs/msg/NavigateToPose_Feedback": "int16 number_of_recoveries\nfloat32 distance_remaining\n",
     "nav2_msgs/msg/NavigateToPose_FeedbackMessage": "unique_identifier_msgs/UUID goal_id\n"
     "nav2_msgs/NavigateToPose_Feedback feedback\n",
+    "moveit_msgs/msg/ServoStatus": "int8 code\nstring message\n",
+    "control_msgs/msg/JointTrajectoryControllerState": "std_msgs/Header header\nstring[] joint_names\n"
+    "trajectory_msgs/JointTrajectoryPoint reference\ntrajectory_msgs/JointTrajectoryPoint feedback\n"
+    "trajectory_msgs/JointTrajectoryPoint error\ntrajectory_msgs/JointTrajectoryPoint output\n",
+    "autoware_adapi_v1_msgs/msg/MrmState": "builtin_interfaces/Time stamp\nuint16 state\nuint16 behavior\n",
+    "autoware_control_msgs/msg/Control": "builtin_interfaces/Time stamp\nbuiltin_interfaces/Time control_time\n"
+    "autoware_control_msgs/Lateral lateral\nautoware_control_msgs/Longitudinal longitudinal\n",
+    "autoware_control_msgs/msg/Lateral": "builtin_interfaces/Time stamp\nfloat32 steering_tire_angle\n",
+    "autoware_control_msgs/msg/Longitudinal": "builtin_interfaces/Time stamp\nfloat32 velocity\nfloat32 acceleration\n",
+    "autoware_planning_msgs/msg/Trajectory": "std_msgs/Header header\n"
+    "autoware_planning_msgs/TrajectoryPoint[] points\n",
+    "autoware_planning_msgs/msg/TrajectoryPoint": "geometry_msgs/Pose pose\nfloat32 longitudinal_velocity_mps\n"
+    "float32 acceleration_mps2\nfloat32 front_wheel_angle_rad\n",
+    "autoware_vehicle_msgs/msg/SteeringReport": "builtin_interfaces/Time stamp\nfloat32 steering_tire_angle\n",
+    "autoware_vehicle_msgs/msg/VelocityReport": "std_msgs/Header header\nfloat32 longitudinal_velocity\n",
 }
-"""Messages of packages that no distribution has here."""
+"""Messages of packages that no distribution has here, with the fields that are read."""
 
 
 def _with_own(store: Stores) -> Any:

@@ -131,7 +131,7 @@ def test_the_rules_of_a_pack_are_written_to_be_changed(tmp_path: Path, capsys: p
 
 def test_an_unknown_pack_or_rule_is_answered_with_those_that_there_are(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["check", "@px5"]) == 2
-    assert "the packs are `diagnostics`, `nav2`, " in capsys.readouterr().err
+    assert "the packs are `autoware`, `diagnostics`, " in capsys.readouterr().err
     assert main(["check", "@px4/gps_acuracy"]) == 2
     assert "did you mean `gps_accuracy`?" in capsys.readouterr().err
 
