@@ -62,13 +62,14 @@ def block(columns: Signals) -> Block:
 
 
 class Judged:
-    """Properties over columns of doubles."""
+    """Properties over columns of doubles; of scans, if `scan` is one; of booleans, if it is `p`, `q` or `r`."""
 
     def __init__(self, properties: Sequence[str], names: Sequence[str]) -> None:
-        fields = {"scan": "sensor_msgs/LaserScan.ranges"}
+        fields = {"scan": "sensor_msgs/LaserScan.ranges"} | dict.fromkeys("pqr", "std_msgs/Bool.data")
         declared = "".join(f"decl {name} /{name} {fields.get(name, 'std_msgs/Float64.data')}\n" for name in names)
         specification, _ = load_text(Source("props.txt", declared + "\n".join(properties)))
         assert specification is not None
+        self.specification = specification
         self.compiled, _ = compile_specification(specification, EPISODE, Budget(60.0, 1024))
         self.plan = load_plan(self.compiled, specification, names)
         self.prepared = prepare_all(self.compiled, specification.source)
