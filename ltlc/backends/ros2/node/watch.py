@@ -13,7 +13,7 @@ from rclpy.node import Node
 from ltlc.backends.ros2.node.clock import RosTime
 from ltlc.backends.ros2.node.diagnosis import Diagnosis
 from ltlc.backends.ros2.node.extracts import Extracts
-from ltlc.backends.ros2.node.guard import UNUSABLE, Pulse
+from ltlc.backends.ros2.node.watchdog import UNUSABLE, Pulse
 from ltlc.backends.ros2.node.intake import Listener
 from ltlc.backends.ros2.node.locks import Locks
 from ltlc.backends.ros2.node.options import Options
@@ -329,7 +329,7 @@ class Watch:
         self._leave_words()
 
     def _leave_words(self) -> None:
-        """Tell the guard what to report if the node hangs or dies from now on."""
+        """Tell the watchdog what to report if the node hangs or dies from now on."""
         verdicts = [*self._verdicts, *(track.verdict for track in self._session.tracks)]
         is_violated = Verdict.VIOLATED in verdicts
         words = self._outlets.words(self._session)
