@@ -13,13 +13,13 @@ from rclpy.node import Node
 from ltlc.backends.ros2.node.clock import RosTime
 from ltlc.backends.ros2.node.diagnosis import Diagnosis
 from ltlc.backends.ros2.node.extracts import Extracts
-from ltlc.backends.ros2.node.watchdog import UNUSABLE, Pulse
 from ltlc.backends.ros2.node.intake import Listener
 from ltlc.backends.ros2.node.locks import Locks
 from ltlc.backends.ros2.node.options import Options
 from ltlc.backends.ros2.node.outlets import Outlets
 from ltlc.backends.ros2.node.snapshot import Snapshot
 from ltlc.backends.ros2.node.topics import Topic
+from ltlc.backends.ros2.node.watchdog import UNUSABLE, Pulse
 from ltlc.runtime.properties import Change
 from ltlc.runtime.reports import counted, exit_code, figure, sentence, summary
 from ltlc.runtime.rows import ByRows

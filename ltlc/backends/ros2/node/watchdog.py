@@ -35,8 +35,8 @@ UNUSABLE = 2
 class Pulse:
     """What a node shows its watchdog: that it lives, its last words, and its exit code.
 
-    Memory of both, since the watchdog looks at it when the node can do nothing any more.
-    There are two places for words, filled in turn, so that one is always whole.
+    Memory of both, since the watchdog looks at it when the node can do nothing any
+    more. There are two places for words, filled in turn, so that one is always whole.
     """
 
     HEAD = 64
