@@ -35,7 +35,7 @@ LONGEST = (
     "test_backends_c.py",
     "test_e2e_node_faults.py",
     "test_assurance_replay.py",
-    "test_e2e_node_guard.py",
+    "test_e2e_node_watchdog.py",
     "test_certify_code.py",
     "test_damage.py",
     "test_commands_build.py",

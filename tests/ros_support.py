@@ -178,7 +178,7 @@ class Node(Program):
 
     @property
     def child(self) -> int:
-        """The process that the node guards, in which it does its work."""
+        """The process that the watchdog looks after, in which the node does its work."""
         (child,) = Path(f"/proc/{self.process.pid}/task/{self.process.pid}/children").read_text().split()
         return int(child)
 

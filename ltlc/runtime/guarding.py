@@ -7,12 +7,13 @@ on forks. Standard library only.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from enum import Enum
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 from ltlc.dataclass import dataclass
 from ltlc.runtime.sampling import Value
+from ltlc.runtime.times import span_text
 
 Values = Mapping[str, Value]
 """The samples of a message, by the names of signals."""
@@ -101,8 +102,13 @@ class Deed:
     reason: str = ""
 
 
-_Plan = tuple[int, Message | None, str]
-"""When something is due, and why: a message, or a look at the clocks."""
+class _Plan(NamedTuple):
+    """What is due at a `moment`: a message before the `bound`, or a look at clocks."""
+
+    moment: int
+    message: Message | None
+    bound: int
+    labels: str
 
 
 class Guard:
@@ -125,12 +131,13 @@ class Guard:
         self.fallbacks = tuple(fallbacks)
         self.lead = lead
         self.lost: str | None = None
+        self._now = 0
         self._planned: tuple[_Plan | None] | None = None
 
     def hear(self, time: int, topic: str, values: Values) -> list[Deed]:
         """A message has come on a topic other than that of commands."""
         self._take(time, topic, values)
-        return self._respond(time, f"after a message on {topic}")
+        return self._respond(time, f"after a message on {topic}", time)
 
     def command(self, time: int, out: str, values: Values) -> Deed:
         """A command has come that asks to leave on the topic `out`."""
@@ -148,18 +155,28 @@ class Guard:
     def due(self) -> int | None:
         """When to call `act`, if nothing comes before; None: never."""
         plan = self._plan()
-        return None if plan is None else plan[0]
+        return None if plan is None else plan.moment
 
-    def act(self, time: int) -> list[Deed]:
-        """It is `time` now: do what is due by then."""
+    def act(self, time: int, now: int | None = None) -> list[Deed]:
+        """Do what is due up to and including `time`; it is `now`, or just that time.
+
+        What is to be sent ahead is sent now. Where its bound has passed by now, or what
+        has to be answered is more than `lead` ago, the guard was late, and has lost.
+        """
+        now = time if now is None else now
+        self._now, self._planned = max(self._now, now), None
         deeds: list[Deed] = []
-        while (plan := self._plan()) is not None and plan[0] <= time:
-            moment, message, why = plan
-            if message is None:
-                self._hold(moment)
-                deeds += self._respond(moment, "when time had passed")
+        while (plan := self._plan()) is not None and plan.moment <= time:
+            if plan.message is None:
+                self._hold(plan.moment)
+                deeds += self._respond(plan.moment, "when time had passed", now)
+            elif now < plan.bound:
+                why = f"ahead of a deadline of {plan.labels}"
+                deeds.append(self._send(plan.moment, plan.message, why))
             else:
-                deeds.append(self._send(moment, message, why))
+                delay = span_text(now - plan.bound + 1)
+                why = f"it was late, {delay} after a deadline of {plan.labels}"
+                deeds.append(self._lose(now, why))
         self._hold(time)
         return deeds
 
@@ -182,16 +199,18 @@ class Guard:
         if due is None:
             return None
         if self.lost is not None or self.watched.is_silent or self._outlasts(due):
-            return due, None, ""
+            return _Plan(due, None, due, "")
         moment = max(self.watched.time, due - 1 - self.lead)
+        if self._now < due:
+            moment = max(moment, self._now)
         for message in self.fallbacks:
             after = self._having_sent(self.watched, moment, message)
             if after is not None:
                 after.hold(due)
                 if self._is_answered(after, due):
                     labels = " and ".join(f"`{n}`" for n in self.watched.expiring(due))
-                    return moment, message, f"ahead of a deadline of {labels}"
-        return due, None, ""
+                    return _Plan(moment, message, due, labels)
+        return _Plan(due, None, due, "")
 
     def _outlasts(self, due: int) -> bool:
         """Whether it is enough to answer what time does then."""
@@ -205,8 +224,8 @@ class Guard:
             self._having_sent(watched, time, message) for message in self.fallbacks
         )
 
-    def _respond(self, time: int, when: str) -> list[Deed]:
-        """Answer what has come, if something has to be."""
+    def _respond(self, time: int, when: str, now: int) -> list[Deed]:
+        """Answer what has come at `time`, if something has to be."""
         violated = self.watched.violated
         if self.lost is not None or (
             violated is None and (self.watched.is_blind or self.watched.rests)
@@ -214,13 +233,19 @@ class Guard:
             return []
         for message in () if self.watched.is_silent else self.fallbacks:
             if self._having_sent(self.watched, time, message) is not None:
+                if now - time > self.lead:
+                    delay = span_text(now - time)
+                    return [self._lose(now, f"it was late, {delay} {when}")]
                 return [self._send(time, message, when)]
-        self.lost = "a violation can no longer be avoided"
-        if violated is not None:
-            label, is_assumed = violated
-            what = "the assumption " if is_assumed else ""
-            self.lost = f"{what}`{label}` is violated"
-        return [Deed(time, Action.LOST, self.outs, reason=self.lost)]
+        if violated is None:
+            return [self._lose(time, "a violation can no longer be avoided")]
+        label, is_assumed = violated
+        what = "the assumption " if is_assumed else ""
+        return [self._lose(time, f"{what}`{label}` is violated")]
+
+    def _lose(self, time: int, why: str) -> Deed:
+        self._planned, self.lost = None, why
+        return Deed(time, Action.LOST, self.outs, reason=why)
 
     def _send(self, time: int, message: Message, why: str) -> Deed:
         self._take(time, message.out, message.values)
@@ -265,3 +290,44 @@ class Guard:
         after.hear(time, message.out, message.values)
         rests = not after.is_blind and after.violated is None and after.rests
         return after if rests else None
+
+
+class Guards:
+    """Guards side by side: what leaves one is a message for the others."""
+
+    def __init__(self, guards: Sequence[Guard], done: Callable[[Deed], object]) -> None:
+        """`done` is told what a guard did before the others hear of it."""
+        self._guards, self._done = guards, done
+
+    def hear(self, time: int, topic: str, values: Values) -> None:
+        """A message has come on a topic other than those of commands."""
+        for guard in self._guards:
+            self._tell(guard, guard.hear(time, topic, values))
+
+    def command(self, time: int, out: str, values: Values) -> None:
+        """A command has come that asks to leave on the topic `out`."""
+        for guard in self._guards:
+            if out in guard.outs:
+                self._tell(guard, [guard.command(time, out, values)])
+
+    def due(self) -> int | None:
+        """When to call `act`, if nothing comes before; None: never."""
+        dues = (due for guard in self._guards if (due := guard.due()) is not None)
+        return min(dues, default=None)
+
+    def act(self, time: int) -> None:
+        """It is `time` now: do what is due by then, in that order."""
+        while (due := self.due()) is not None and due <= time:
+            for guard in self._guards:
+                if guard.due() == due:
+                    self._tell(guard, guard.act(due, time))
+
+    def _tell(self, sender: Guard, deeds: Sequence[Deed]) -> None:
+        for deed in deeds:
+            self._done(deed)
+            if deed.values is None:
+                continue
+            for guard in self._guards:
+                if guard is not sender:
+                    heard = guard.hear(deed.time, deed.outs[0], deed.values)
+                    self._tell(guard, heard)

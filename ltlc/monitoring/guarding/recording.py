@@ -18,7 +18,7 @@ from ltlc.monitoring.guarding.arrangement import Arrangement
 from ltlc.monitoring.guarding.followed import Followed
 from ltlc.monitoring.guarding.report import GuardReport
 from ltlc.runtime import sampling
-from ltlc.runtime.guarding import Deed, Guard, Message, Values
+from ltlc.runtime.guarding import Deed, Guard, Guards, Message, Values
 from ltlc.runtime.session import Plan
 from ltlc.semantics.arenas import Arena, Region
 from ltlc.semantics.durations import Nanoseconds
@@ -203,7 +203,7 @@ class GuardedRun:
         self._arranged = [
             (some, Arrangement(some.arena, some.region, some.conditions, properties, plan)) for some in guarding.solved
         ]
-        self._guards: list[tuple[Solved, Guard]] = []
+        self._guards: Guards | None = None
 
     def row(self, time: Nanoseconds, samples: Values, topics: Sequence[str]) -> None:
         """What came in at once: messages on other topics first, then commands."""
@@ -222,48 +222,35 @@ class GuardedRun:
                 messages.setdefault(topic, {})
         self.act(time)
         for topic, values in messages.items():
-            self._hear(Event(time, topic, values))
+            guards = self._begun(time)
+            self.taken.append(Event(time, topic, values))
+            guards.hear(time, topic, values)
         for out, values in commands.items():
-            self._command(time, out, values)
+            self._begun(time).command(time, out, values)
 
     def act(self, time: Nanoseconds) -> None:
         """Do all that is due up to and including `time`, in its order."""
-        while (due := min((d for _, g in self._guards if (d := g.due()) is not None), default=None)) is not None:
-            if due > time:
-                break
-            for number, (_, guard) in enumerate(self._guards):
-                if guard.due() == due:
-                    self._done(number, guard.act(due))
+        while self._guards is not None and (due := self._guards.due()) is not None and due <= time:
+            self._guards.act(due)
 
-    def _begin(self, time: Nanoseconds) -> None:
-        """The session begins with the first message."""
-        for some, arrangement in () if self._guards else self._arranged:
-            messages = [
-                _message(fallback, guard.out, self._signals, self._topics)
-                for guard in some.guards
-                for fallback in guard.fallbacks
-            ]
-            self._guards.append((some, Guard(Followed(arrangement, time), some.arena.outs, messages, self._lead)))
+    def _begun(self, time: Nanoseconds) -> Guards:
+        """The guards; the session begins with the first message."""
+        if self._guards is None:
+            self._guards = Guards([self._guard(some, each, time) for some, each in self._arranged], self._done)
+        return self._guards
 
-    def _hear(self, event: Event, sender: int | None = None) -> None:
-        """A message came, or left a guard: the others hear it."""
-        self._begin(event.time)
-        self.taken.append(event)
-        for number, (_, guard) in enumerate(self._guards):
-            if number != sender:
-                self._done(number, guard.hear(event.time, event.topic, event.values))
+    def _guard(self, some: Solved, arrangement: Arrangement, began: Nanoseconds) -> Guard:
+        messages = [
+            _message(fallback, guard.out, self._signals, self._topics)
+            for guard in some.guards
+            for fallback in guard.fallbacks
+        ]
+        return Guard(Followed(arrangement, began), some.arena.outs, messages, self._lead)
 
-    def _command(self, time: Nanoseconds, out: str, values: Values) -> None:
-        self._begin(time)
-        for number, (some, guard) in enumerate(self._guards):
-            if out in some.arena.outs:
-                self._done(number, [guard.command(time, out, values)])
-
-    def _done(self, number: int, deeds: Sequence[Deed]) -> None:
-        for deed in deeds:
-            self.deeds.append(deed)
-            if deed.values is not None:
-                self._hear(Event(deed.time, deed.outs[0], deed.values), number)
+    def _done(self, deed: Deed) -> None:
+        self.deeds.append(deed)
+        if deed.values is not None:
+            self.taken.append(Event(deed.time, deed.outs[0], deed.values))
 
     def block(self) -> Block:
         """The messages that were taken since the last one."""

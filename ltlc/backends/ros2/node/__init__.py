@@ -6,7 +6,7 @@ that order and without its imports of ltlc. `life.main` is what such a node runs
 
 MODULES = (
     "ltlc.backends.ros2.node.files",
-    "ltlc.backends.ros2.node.guard",
+    "ltlc.backends.ros2.node.watchdog",
     "ltlc.backends.ros2.node.options",
     "ltlc.backends.ros2.node.losses",
     "ltlc.backends.ros2.node.classes",

@@ -21,10 +21,10 @@ from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import remove_ros_args, try_shutdown
 
 from ltlc.backends.ros2.node.files import UnusableError
-from ltlc.backends.ros2.node.guard import UNUSABLE, Pulse
 from ltlc.backends.ros2.node.options import read_options
 from ltlc.backends.ros2.node.topics import Topic
 from ltlc.backends.ros2.node.watch import LetIn, Watch
+from ltlc.backends.ros2.node.watchdog import UNUSABLE, Pulse
 from ltlc.runtime.session import Plan
 
 
@@ -39,7 +39,8 @@ def run_node(
 ) -> int:
     """Monitor until a signal, the timeout or a violation ends it; the exit code.
 
-    `pulse` shows a guard that the node lives; `provenance` is part of what it reports.
+    `pulse` shows the watchdog that the node lives; `provenance` is part of what it
+    reports.
 
     rclpy's own signal handlers would shut down the context, and with it the way to
     publish the final verdicts: SIGINT and SIGTERM only ask the loop to end. They may

@@ -72,7 +72,7 @@ class Outlets:
             self._guard(self._recorder.end, session.time)
 
     def words(self, session: Session) -> dict[str, Any]:
-        """What the guard reports if the node cannot, as data."""
+        """What the watchdog reports if the node cannot, as data."""
         jsonl, junit = self._options.jsonl, self._options.junit
         return {
             "jsonl": None if jsonl is None else str(jsonl),

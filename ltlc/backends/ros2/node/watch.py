@@ -13,13 +13,13 @@ from rclpy.node import Node
 from ltlc.backends.ros2.node.clock import RosTime
 from ltlc.backends.ros2.node.diagnosis import Diagnosis
 from ltlc.backends.ros2.node.extracts import Extracts
-from ltlc.backends.ros2.node.guard import UNUSABLE, Pulse
 from ltlc.backends.ros2.node.intake import Listener
 from ltlc.backends.ros2.node.locks import Locks
 from ltlc.backends.ros2.node.options import Options
 from ltlc.backends.ros2.node.outlets import Outlets
 from ltlc.backends.ros2.node.snapshot import Snapshot
 from ltlc.backends.ros2.node.topics import Topic
+from ltlc.backends.ros2.node.watchdog import UNUSABLE, Pulse
 from ltlc.runtime.properties import Change
 from ltlc.runtime.reports import counted, exit_code, figure, sentence, summary
 from ltlc.runtime.rows import ByRows
@@ -329,7 +329,7 @@ class Watch:
         self._leave_words()
 
     def _leave_words(self) -> None:
-        """Tell the guard what to report if the node hangs or dies from now on."""
+        """Tell the watchdog what to report if the node hangs or dies from now on."""
         verdicts = [*self._verdicts, *(track.verdict for track in self._session.tracks)]
         is_violated = Verdict.VIOLATED in verdicts
         words = self._outlets.words(self._session)

@@ -1,4 +1,4 @@
-"""The node is guarded by its parent, which reports its verdicts if it hangs or dies."""
+"""The parent of a node is its watchdog: it reports its verdicts if it hangs or dies."""
 
 from __future__ import annotations
 
@@ -33,10 +33,10 @@ UNUSABLE = 2
 
 
 class Pulse:
-    """What a node shows its guard: that it lives, its last words, and its exit code.
+    """What a node shows its watchdog: that it lives, its last words, and its exit code.
 
-    Memory of both, since the guard looks at it when the node can do nothing any more.
-    There are two places for words, filled in turn, so that one is always whole.
+    Memory of both, since the watchdog looks at it when the node can do nothing any
+    more. There are two places for words, filled in turn, so that one is always whole.
     """
 
     HEAD = 64
@@ -86,10 +86,10 @@ class Pulse:
         self._numbers[self.CURRENT] = other
 
 
-def guarded(run: Callable[[Pulse], int]) -> int:
+def with_watchdog(run: Callable[[Pulse], int]) -> int:
     """`run` a node in a child of this process; its exit code.
 
-    A thread could not be the guard: rclpy holds the interpreter while it asks the
+    A thread could not be the watchdog: rclpy holds the interpreter while it asks the
     middleware, so that a call that never returns stops every thread of Python.
     """
     pulse = Pulse()
@@ -97,11 +97,11 @@ def guarded(run: Callable[[Pulse], int]) -> int:
     sys.stderr.flush()
     pthread_sigmask(SIG_BLOCK, (SIGINT, SIGTERM))
     on_signal(SIGCHLD, SIG_DFL)  # else nobody could ask how the child ended
-    guard, (reading, writing) = os.getpid(), os.pipe()
+    parent, (reading, writing) = os.getpid(), os.pipe()
     pid = os.fork()
     if pid == 0:
         os.close(reading)
-        live(run, pulse, guard)
+        live(run, pulse, parent)
     os.close(writing)
 
     def pass_on(number: int, _: Any) -> None:
@@ -111,16 +111,16 @@ def guarded(run: Callable[[Pulse], int]) -> int:
     for number in (SIGINT, SIGTERM):
         on_signal(number, pass_on)
     pthread_sigmask(SIG_UNBLOCK, (SIGINT, SIGTERM))
-    return Guard(pid, reading, pulse).exit_code()
+    return Watchdog(pid, reading, pulse).exit_code()
 
 
-def live(run: Callable[[Pulse], int], pulse: Pulse, guard: int) -> NoReturn:
-    """In the child: be the node, and end as it does, or with the guard."""
+def live(run: Callable[[Pulse], int], pulse: Pulse, parent: int) -> NoReturn:
+    """In the child: be the node, and end as it does, or with its parent."""
     code = UNUSABLE
     try:
         if sys.platform == "linux":
             ctypes.CDLL(None).prctl(1, SIGKILL)  # PR_SET_PDEATHSIG
-        if os.getppid() == guard:
+        if os.getppid() == parent:
             code = run(pulse)
     except SystemExit as end:  # of --help, or of arguments that are refused
         code = end.code if isinstance(end.code, int) else UNUSABLE
@@ -134,12 +134,12 @@ def live(run: Callable[[Pulse], int], pulse: Pulse, guard: int) -> NoReturn:
         os._exit(code)
 
 
-class Guard:
+class Watchdog:
     """Waits for a node to end, and ends one that hangs.
 
-    It hangs if it has not shown for `PATIENCE` s that it lives. Time in which the guard
-    itself did not run, because the machine is busy or sleeps, is not counted, nor time
-    in which the node has been stopped, as by a debugger, or waits for a disk.
+    It hangs if it has not shown for `PATIENCE` s that it lives. Time in which the
+    watchdog itself did not run, because the machine is busy or sleeps, is not counted,
+    nor time in which the node has been stopped, as by a debugger, or waits for a disk.
     """
 
     LOOK = 0.1
