@@ -20,6 +20,9 @@ TIME_STEP = 0.002
 PERIOD = 0.02
 """Between two observations, in s."""
 
+AFTERWARDS = 0.5
+"""How long it tells that it is held, in s."""
+
 SPEED = 0.5
 PATIENCE = 300.0
 
@@ -151,18 +154,23 @@ def main() -> None:
     )
     parser.add_argument("--reaction", type=float, help="after so many seconds at the box it stops")
     parser.add_argument("--blind-after", type=float, default=float("inf"), help="when its lidar falls silent, in s")
-    parser.add_argument("--lock", metavar="TOPIC", help="it is held once a message on TOPIC is true")
+    parser.add_argument(
+        "--lock", metavar="TOPIC", help="it is held once a message on TOPIC is true, and has driven some time later"
+    )
     arguments = parser.parse_args()
     robot, bridge = Robot(arguments.reaction), Bridge()
     bridge.wait()
     if arguments.lock:
         bridge.obey(robot, arguments.lock)
-    began = time.monotonic()
+    due, until = time.monotonic(), arguments.seconds
     while True:
         bridge.publish(robot, robot.time < arguments.blind_after)
         robot.drive()
-        time.sleep(max(0.0, began + robot.time - time.monotonic()))
-        if robot.time >= arguments.seconds:
+        due = max(due + PERIOD, time.monotonic())  # time lost is not made up for
+        time.sleep(max(0.0, due - time.monotonic()))
+        if arguments.lock and not robot.is_held:
+            until = robot.time + AFTERWARDS
+        if robot.time >= until:
             print("has driven", flush=True)
 
 

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 from effort import ASKED, SHARE, limit_examples
-from hypothesis import settings
+from hypothesis import HealthCheck, settings
 from quick_gate import quick_gate
 from ros_support import Network, Send, own_domain
 
@@ -24,7 +24,9 @@ from ltlc.semantics.monitor import Monitor
 
 # Time varies with the load of the machine, and no test is about it. In CI the same commit gets the same answer; new
 # examples are found where developers run the tests.
-settings.register_profile("ltlc", deadline=None, derandomize=bool(os.environ.get("CI")))
+settings.register_profile(
+    "ltlc", deadline=None, derandomize=bool(os.environ.get("CI")), suppress_health_check=[HealthCheck.too_slow]
+)
 settings.load_profile("ltlc")
 
 LONGEST = (

@@ -12,7 +12,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any, Self
 
-PATIENCE = 60
+PATIENCE = 300
 """Seconds after which a message will not come any more."""
 
 URI = "file:///home/robot/props.txt"

@@ -14,7 +14,7 @@ from xml.etree import ElementTree
 
 import pytest
 from quick_gate import quick_gate
-from ros_support import own_domain, wait_until
+from ros_support import PATIENCE, own_domain, wait_until
 
 from ltlc.cli import main
 
@@ -171,7 +171,7 @@ def test_what_is_installed_runs_and_ends(installed: Path, tmp_path: Path) -> Non
         try:
             wait_until(lambda: (tmp_path / "verdicts.jsonl").exists() or node.poll() is not None, "the node")
             node.send_signal(signal.SIGINT)
-            assert node.wait(60) == 3, (tmp_path / "log").read_text()
+            assert node.wait(PATIENCE) == 3, (tmp_path / "log").read_text()
         finally:
             if node.poll() is None:
                 node.kill()

@@ -135,21 +135,26 @@ def test_a_gap_and_a_doubt_add_up_to_no_number(watch: Callable[..., Any], tmp_pa
     assert final["properties"][0]["lost_at_least"] == {"/a": 50}
 
 
-def test_a_diagnosis_that_took_long_is_not_made_again_at_once(watch: Callable[..., Any]) -> None:
+def test_a_diagnosis_that_took_long_is_not_made_again_at_once(
+    watch: Callable[..., Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
     _, inside, _ = watch()
     made: list[float] = []
+    now = time.monotonic()
+    monkeypatch.setattr(time, "monotonic", lambda: now)
 
     def diagnose() -> None:
-        made.append(time.monotonic())
-        time.sleep(0.05)
+        nonlocal now
+        made.append(now)
+        now += 0.05
 
     inside._diagnose = diagnose
     for _ in range(3):
         inside._next_diagnosis = 0.0  # as where a verdict has changed
         inside.keep_house()
     assert len(made) == 1
-    assert inside._rested > made[0] + 0.5
-    inside._rested = made[0]
+    assert inside._rested == pytest.approx(made[0] + 0.05 + 0.5)
+    now = inside._rested
     inside.keep_house()
     assert len(made) == 2
     inside.end()

@@ -167,6 +167,7 @@ CAMPAIGN = """
 import sys
 from pathlib import Path
 import psutil
+from ltlc.monitoring.campaigns import engine
 from ltlc.monitoring.campaigns.campaign import judge_all, on_this_machine
 from ltlc.monitoring.campaigns.engine import on_engine
 from ltlc.monitoring.campaigns.places import find
@@ -174,6 +175,7 @@ from ltlc.monitoring.judging.run import Judge
 from stepping import from_text
 
 if __name__ == "__main__":
+    engine.SECONDS = 300.0
     places = find(["drives"]).places
     judge = Judge(*from_text(Path("props.txt").read_text()))
     wanted = {each.place: each.document() for each in judge_all(judge, places, on_this_machine(1))}

@@ -40,6 +40,13 @@ def start(tmp_path: Path) -> Iterator[Start]:
         process.communicate()
 
 
+def put(path: Path, text: str) -> None:
+    """Write a file that is there as a whole or not at all."""
+    part = path.with_name(".part")
+    part.write_text(text)
+    part.replace(path)
+
+
 def report(process: subprocess.Popen[str]) -> str:
     """What is printed until the command waits."""
     assert process.stdout is not None
@@ -60,7 +67,7 @@ def test_check_runs_again_when_the_specification_changes(start: Start, tmp_path:
     path.write_text("slow: never w > 2\n")
     process = start("check", "props.txt", "--watch")
     assert "LTL101" in report(process)
-    path.write_text(PROPERTY.format(2))
+    put(path, PROPERTY.format(2))
     assert report(process) == "slow: can hold, can fail\n"
     assert interrupted(process) == 0
 
@@ -72,7 +79,7 @@ def test_run_runs_again_when_a_recording_comes_and_ends_with_its_last_code(start
     (tmp_path / "drives" / "a.csv").write_text("time,v\n0,1\n")
     process = start("run", "props.txt", "drives", "--watch", "--summary", "drives/all.html")
     assert "1 recording" in report(process)
-    (tmp_path / "drives" / "b.csv").write_text("time,v\n0,3\n")
+    put(tmp_path / "drives" / "b.csv", "time,v\n0,3\n")
     assert "2 recordings: 1 with a violation" in report(process)
     assert interrupted(process) == 1
 

@@ -14,7 +14,7 @@ PROPERTIES = """
 decl robot /fleet sensor_msgs/JoyFeedback.id
 decl kind /fleet sensor_msgs/JoyFeedback.type
 decl level /fleet sensor_msgs/JoyFeedback.intensity
-charges: each r of robot: always (level < 0.2 implies eventually kind == 1 within 300 ms)
+charges: each r of robot: always (level < 0.2 implies eventually kind == 1 within 3 s)
 few: each f of robot limit 2: eventually kind == 1
 """
 

@@ -55,22 +55,22 @@ def script(folder: Path) -> Path:
     return emitted(PROPERTIES, folder)
 
 
-def test_a_signal_ends_the_run_with_its_verdicts(script: Path, network: Network, send: Send, tmp_path: Path) -> None:
-    for number in (signal.SIGINT, signal.SIGTERM):
-        place = tmp_path / number.name
-        place.mkdir()
-        with Node(script, place) as node:
-            send(1.0)
-            network.wait_until(lambda node=node: len(node.changes) == 2, "first verdicts")  # type: ignore[misc]
-            assert node.end(number) == 3
-        (run,) = node.runs
-        assert {label: found["verdict"] for label, found in run.items()} == {
-            "low": "presumably_satisfied",
-            "reached": "presumably_violated",
-        }
-        assert "unmet since" in node.log
-        suite = ElementTree.parse(node.junit).getroot()
-        assert (suite.get("tests"), suite.get("failures"), suite.get("errors")) == ("2", "1", "0")
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_ends_the_run_with_its_verdicts(
+    script: Path, network: Network, send: Send, tmp_path: Path, number: signal.Signals
+) -> None:
+    with Node(script, tmp_path) as node:
+        send(1.0)
+        network.wait_until(lambda: len(node.changes) == 2, "first verdicts")
+        assert node.end(number) == 3
+    (run,) = node.runs
+    assert {label: found["verdict"] for label, found in run.items()} == {
+        "low": "presumably_satisfied",
+        "reached": "presumably_violated",
+    }
+    assert "unmet since" in node.log
+    suite = ElementTree.parse(node.junit).getroot()
+    assert (suite.get("tests"), suite.get("failures"), suite.get("errors")) == ("2", "1", "0")
 
 
 def test_all_that_a_node_reports_has_what_it_was_built_by_and_from(
@@ -245,15 +245,15 @@ def topics(folder: Path) -> dict[str, Any]:
         scan.publish(LaserScan(ranges=[float("nan"), 0.125, 3.0]))
         states = [("camera", b"\x02"), ("base", b"\x01"), ("arm", b"\x02")]
         report.publish(DiagnosticArray(status=[DiagnosticStatus(name=name, level=level) for name, level in states]))
-        effort.publish(Float64(data=1.0))
         hollow.publish(Float64(data=float("nan")))
         levels.publish(DiagnosticArray())
         injected.publish(String(data=NAUGHTY))
 
         def everything_came() -> bool:
+            effort.publish(Float64(data=1.0))  # again and again: nobody sends it again when it is lost
             found = {name: status.message for name, status in network.statuses.items()}
             wanted = {
-                "best_effort": "1 step",
+                "best_effort": "presumably satisfied",
                 "latched": "1 step",
                 "other_type": "published as",
                 "not_a_number": "NaN",

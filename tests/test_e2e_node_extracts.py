@@ -74,7 +74,7 @@ def test_two_properties_that_are_violated_together_have_a_file_each_with_what_ca
 
     noting = network.publisher(String, "/notes")
     topics = "[/x, /notes]"
-    with Node(script, tmp_path, cut=tmp_path / "cut", cut_topics=topics, cut_before=60.0, cut_after=0.5) as node:
+    with Node(script, tmp_path, cut=tmp_path / "cut", cut_topics=topics, cut_before=60.0, cut_after=2.0) as node:
         sending = publisher(network, node)
         network.matched([noting])
         for number in (1.0, 2.0, 9.0, 3.0):
@@ -99,8 +99,16 @@ def test_a_window_has_every_message_that_was_judged_in_it(script: Path, network:
     with Node(script, tmp_path, cut=cut, cut_before=60.0, cut_after=1.0, record=record) as node:
         sending = publisher(network, node)
         began, count = time.monotonic(), 6000
+
+        def is_violated() -> bool:
+            """Whether 9 has come, which may be lost as any other."""
+            sending.publish(Float64(data=9.0))
+            return ("low", "violated") in node.changes
+
         for number in range(count):
-            sending.publish(Float64(data=9.0 if number == 3000 else number / 1e4))
+            if number == count // 2:
+                network.wait_until(is_violated, "the violation")
+            sending.publish(Float64(data=number / 1e4))
             time.sleep(max(0.0, began + (number + 1) / 2000 - time.monotonic()))
         network.wait_until(lambda: len(list(cut.glob("*.mcap"))) == 2, "extracts")
         node.end()
@@ -188,7 +196,8 @@ def test_a_recorder_is_asked_for_a_snapshot(
     service = network.node.create_service(ChangeState, "/recorder/snapshot", take)
     with Node(script, tmp_path, snapshot="/recorder/snapshot") as node:
         sending = publisher(network, node)
-        network.wait_until(lambda: network.node.count_clients("/recorder/snapshot"), "a client")
+        network.hear_verdicts("/watch_monitor/verdicts")  # who knows of this listener knows of the service before
+        network.wait_until(lambda: network.verdicts, "the verdicts so far")
         sending.publish(Float64(data=9.0))
         network.wait_until(lambda: told in node.log, "the answer")
         assert node.end() == 1

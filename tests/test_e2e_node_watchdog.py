@@ -47,11 +47,17 @@ def hanging(folder: Path, where: str) -> Path:
     return node
 
 
+def has_left_words(network: Network, said: str) -> None:
+    """Wait until what its guard would report of the node is what a diagnosis said: the next one comes after that."""
+    network.wait_until(lambda: said in network.message("watch_monitor: low"), f"a diagnosis with {said}")
+    latest = network.latest_diagnosis
+    network.wait_until(lambda: network.latest_diagnosis != latest, "another diagnosis")
+
+
 def test_a_node_that_hangs_is_ended_with_its_verdicts(network: Network, send: Send, tmp_path: Path) -> None:
     with Node(hanging(tmp_path, IN_THE_LOOP), tmp_path) as node:
         send(1.0)
-        network.wait_until(lambda: "watch_monitor: low" in network.statuses and node.changes, "the first step")
-        time.sleep(1.5)
+        has_left_words(network, "1 step")
         (tmp_path / "hang").touch()
         node.process.send_signal(signal.SIGINT)
         assert node.exit_code() == 2
@@ -65,8 +71,7 @@ def test_a_node_that_hangs_is_ended_with_its_verdicts(network: Network, send: Se
 def test_a_violation_before_a_node_hangs_is_its_exit_code(network: Network, send: Send, tmp_path: Path) -> None:
     with Node(hanging(tmp_path, IN_THE_LOOP), tmp_path) as node:
         send(6.0)
-        network.wait_until(lambda: "violated" in network.message("watch_monitor: low"), "the violation")
-        time.sleep(0.5)
+        has_left_words(network, "violated")
         (tmp_path / "hang").touch()
         assert node.exit_code() == 1
     assert node.runs[0]["low"]["decided_at"]["values"] == {"x": 6.0}
@@ -83,8 +88,7 @@ def test_what_hangs_after_its_verdicts_has_their_exit_code(send: Send, tmp_path:
 def test_a_node_that_dies_leaves_its_verdicts(script: Path, network: Network, send: Send, tmp_path: Path) -> None:
     with Node(script, tmp_path) as node:
         send(1.0)
-        network.wait_until(lambda: node.changes, "the first step")
-        time.sleep(1.5)
+        has_left_words(network, "1 step")
         os.kill(node.child, signal.SIGSEGV)
         assert node.exit_code() == 2
     assert node.lines[-1]["failed"] == "the node died with signal 11"

@@ -31,7 +31,7 @@ decl scan /scan sensor_msgs/LaserScan.ranges
 stops: always (bumper implies eventually speed < 0.02 within 300 ms)
 sees: after new scan, always age(scan) <= 600 ms
 moves: never historically (commanded > 0 and speed < 0.02) for 2 s
-arrives: eventually new bumper within 10 s
+arrives: eventually new bumper within 10 min
 untouched: never bumper
 """
 
@@ -247,7 +247,7 @@ def owed(node: Node) -> bool:
 
 
 def test_a_node_that_wakes_late_says_so(folder: Path, network: Network, send: Send, tmp_path: Path) -> None:
-    script = sleeper(folder, WATCHED.replace("300 ms", "1 s"), 2)
+    script = sleeper(folder, WATCHED.replace("300 ms", "3 s"), 4)
     recording = tmp_path / "run.jsonl"
     with Node(script, tmp_path, record=recording) as node:
         send("done", False)
@@ -262,7 +262,7 @@ def test_a_node_that_wakes_late_says_so(folder: Path, network: Network, send: Se
         assert node.end() == 1
     found = node.runs[0]["answered"]
     begun = max(time for time, row in recorded(recording) if row)  # of two topics, either may have been heard first
-    assert found["decided_at"]["time_ns"] == begun + 1000 * MS + 1
+    assert found["decided_at"]["time_ns"] == begun + 3000 * MS + 1
     assert (found["told_late"]["times"], found["told_late"]["longest"] > 0.02) == (1, True)
     assert "reported late 1 time, by " in node.log
     assert "reported late 1 time, by " in node.junit.read_text(encoding="utf-8")
@@ -282,9 +282,8 @@ def test_what_was_received_in_time_settles_what_a_late_node_looks_at_later(
         send("done", True)
         network.wait_until(lambda: node.changes[-1][1] != "presumably_violated", "another verdict")
         node.end()
-    times = {name: time for time, row in recorded(recording) for name, value in row.items() if value}
-    is_late = times["done"] > times["go"] + 3000 * MS
-    assert (node.changes[-1][1] == "violated") == is_late
+    _, begun, answered = (time for time, row in recorded(recording) if row)
+    assert (node.changes[-1][1] == "violated") == (answered > begun + 3000 * MS)
     assert told(judged(folder / "watch.txt", recording)) == told(node.runs[0])
 
 
@@ -292,7 +291,7 @@ def test_what_was_received_in_time_settles_what_a_late_node_looks_at_later(
 def test_messages_that_wait_are_judged_in_the_order_of_their_receipt(
     folder: Path, network: Network, send: Send, tmp_path: Path, executor: str
 ) -> None:
-    script = sleeper(folder, "decl go /go std_msgs/Bool.data\ndecl done /done std_msgs/Bool.data\nnever go and done", 2)
+    script = sleeper(folder, "decl go /go std_msgs/Bool.data\ndecl done /done std_msgs/Bool.data\nnever go and done", 4)
     script.write_text(script.read_text(encoding="utf-8").replace("rclpy.experimental", executor), encoding="utf-8")
     recording = tmp_path / "run.jsonl"
     with Node(script, tmp_path, record=recording) as node:
