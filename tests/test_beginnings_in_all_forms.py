@@ -143,9 +143,8 @@ def test_they_are_judged_alike_live(folder: Path, network: Network, tmp_path: Pa
             publisher = publishers[name]
             publisher.publish(Int32(data=int(value)) if name == "st" else Float64(data=float(value)))
             # Two messages that wait on different topics are taken in either order.
-            network.wait_until(
-                lambda name=name: (f"heard_{name}", "satisfied") in node.changes, f"the message of {name}"
-            )
+            heard = (f"heard_{name}", "satisfied")
+            network.wait_until(lambda heard=heard: heard in node.changes, f"the message of {name}")  # type: ignore[misc]
         violated = {(f"p{n}", "violated") for n, verdict in enumerate(EXAMPLES.values()) if verdict is Verdict.VIOLATED}
         network.wait_until(lambda: violated <= set(node.changes), "what is violated")
         assert node.end() == 1
