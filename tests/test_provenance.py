@@ -132,6 +132,7 @@ OUTPUTS = {
     "build ament": "build props.txt --target ament -o props_monitor",
     "build json": "build props.txt --target json -o out",
     "build hoa": "build props.txt --target hoa -o out",
+    "build tests": "build props.txt --target tests -o out",
     "mine json": "mine props.txt a.csv --format json",
     "compare json": "compare props.txt --format json",
     "matrix json": "matrix props.txt --format json",

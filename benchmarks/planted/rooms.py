@@ -24,7 +24,8 @@ ROOMS = {
     "backends/python": "test_backends_python.py test_backends_time.py test_assurance_replay.py test_ground_truth.py",
     "backends/rust": "test_backends_rust.py test_assurance_reading_rust.py test_each_rust.py",
     "backends/ros2": "test_backends_ros2*.py test_e2e_*.py test_each_code.py test_each_message_code.py",
-    "interfaces/building": "test_commands_build.py test_assurance_reading_c.py test_backends_ament.py test_api.py",
+    "interfaces/building": "test_commands_build.py test_assurance_reading_c.py test_backends_ament.py test_api.py "
+    "test_covering_runs.py",
     "monitoring/campaigns": "test_campaigns*.py",
     "base/codes": "test_codes.py test_language_check.py test_render.py",
     "monitoring/columns": "test_columns*.py",

@@ -41,12 +41,12 @@ class Messages:
     """Makes messages of the types that a specification knows."""
 
     def __init__(self, types: MessageTypes) -> None:
-        self._types = types
+        self.types = types
         self._classes: dict[str, Any] = {}
 
     def type_at(self, message: str, path: Path) -> FieldType:
         """The type of the field that `path` leads to in a message."""
-        return self._types.along(message, path)[-1]
+        return self.types.along(message, path)[-1]
 
     def is_installed(self, message: str) -> bool:
         """Whether the package of a message is installed here, and defines it and its parts in the same way."""
@@ -54,13 +54,13 @@ class Messages:
 
     def _class(self, message: str) -> Any:
         if message not in self._classes:
-            fields = self._types.messages[message].fields
+            fields = self.types.messages[message].fields
             try:
                 found = class_of(message)
                 is_same = [*found.get_fields_and_field_types()] == [*fields]
             except (ImportError, AttributeError):
                 is_same = False
-            parts = (f.base for f in fields.values() if f.base in self._types.messages)
+            parts = (f.base for f in fields.values() if f.base in self.types.messages)
             self._classes[message] = found if is_same and all(map(self.is_installed, parts)) else None
         return self._classes[message]
 
@@ -71,7 +71,7 @@ class Messages:
         entities = sorted({step.value for step in parallel})
         for name, inside in _by_step(content).items():
             assert isinstance(name, str)
-            setattr(made, name, self._field(self._types.messages[message].fields[name], inside, entities))
+            setattr(made, name, self._field(self.types.messages[message].fields[name], inside, entities))
         for names in {step.names for step in parallel}:
             setattr(made, names, [_OTHER, *entities, *entities])
         return made
@@ -81,13 +81,13 @@ class Messages:
         found = self._class(message)
         if found is not None:
             return found()
-        fields = self._types.messages[message].fields
+        fields = self.types.messages[message].fields
         return SimpleNamespace(**{name: self._default(type_) for name, type_ in fields.items()})
 
     def _default(self, type_: FieldType) -> Any:
         if type_.length is not None:
             return _stored(type_, [self._default(FieldType(type_.base)) for _ in range(type_.length)])
-        if type_.base in self._types.messages:
+        if type_.base in self.types.messages:
             return self._empty(type_.base)
         if type_.base in STRINGS:
             return ""

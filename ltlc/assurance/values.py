@@ -46,6 +46,9 @@ LONGEST_HISTORY = 50
 TRIES = 200
 """Frames drawn in search of letters."""
 
+EVEN = 50
+"""Frames drawn in search of letters in which the numbers on a topic are the same."""
+
 STARTS = 20
 """How often frames before the first step are drawn in search of such as a valid step can follow."""
 
@@ -162,7 +165,8 @@ class Samples:
         before = before if self.origins.remembers else before[len(before) - self.reach + 1 :]
         if before not in self._known:
             found: dict[Letter, list[Frame]] = {}
-            for source in (*self._edges(before), before, (self.draw() for _ in range(TRIES))):
+            drawn, calm = (self.draw() for _ in range(TRIES)), (self._even_on_topics() for _ in range(EVEN))
+            for source in (*self._edges(before), before, drawn, calm):
                 taken: Counter[Letter] = Counter()
                 for frame in source:
                     seen = self.letter((*before, frame))
@@ -200,6 +204,13 @@ class Samples:
         number = self.chance.choice(self._numbers)
         drawn = {s: number if s.type is ValueType.NUMBER else self._value(s.type) for s in self.sources.signals}
         return Frame(self.sources.possible(drawn))
+
+    def _even_on_topics(self) -> Frame:
+        """A sample in which all numbers on a topic are the same: so a norm of several can be small, or none."""
+        numbers = {topic: self.chance.choice(self._numbers) for topic in self.sources.topics()}
+        evened = {s: numbers[p.field.topic] for s, p in self.sources.places.items() if s.type is ValueType.NUMBER}
+        drawn = {s: self._value(s.type) for s in self.sources.signals if s not in evened}
+        return Frame(self.sources.possible(evened | drawn))
 
     def _value(self, type_: ValueType) -> Value:
         return self._single(type_) if type_.element is None else self._array(type_.element)

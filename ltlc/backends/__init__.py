@@ -21,6 +21,7 @@ FILE_NAMES = {
     "hoa": "{stem}.hoa",
     "dot": "{stem}.dot",
     "json": "{stem}.json",
+    "tests": "{stem}_tests",
 }
 """The targets, and what their output is called, beside where one stands."""
 

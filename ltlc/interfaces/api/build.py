@@ -29,13 +29,15 @@ class Build:
 
     diagnostics: tuple[Diagnostic, ...]
     judgements: Mapping[str, str]
-    files: Mapping[Path, str]
+    files: Mapping[Path, str | bytes]
     _built: Built
 
     @property
     def text(self) -> str:
-        """The text of the first file, which is the only one but of `c` and `ament`."""
-        return next(iter(self.files.values()))
+        """The text of the first file, which is the only one but of `c`, `ament` and `tests`."""
+        first = next(iter(self.files.values()))
+        assert isinstance(first, str)
+        return first
 
     @cached_property
     def certificates(self) -> str:
@@ -72,7 +74,7 @@ def build(
     message_paths: Sequence[str | PathLike[str]] = (),
     budget: Budget | None = None,
 ) -> Build:
-    """The output of `specification` for a target: `ros2`, `ament`, `python`, `c`, `hoa`, `dot` or `json`.
+    """The output of `specification` for a target: `ros2`, `ament`, `python`, `c`, `rust`, `hoa`, `dot`, `json`, `tests`.
 
     >>> import ltlc
     >>> built = ltlc.build("slow: never robot.velocity > 2", "hoa")
@@ -104,7 +106,7 @@ def build(
     return Build(prepared.diagnostics, dict(built.summaries()), _files(made_for, built), built)
 
 
-def _files(target: Target, built: Built) -> Mapping[Path, str]:
+def _files(target: Target, built: Built) -> Mapping[Path, str | bytes]:
     """The output. Raises UnusableInput if it depends on what stands in its place, and that cannot be."""
     try:
         return built.made.files()

@@ -36,7 +36,7 @@ class Made:
 
     programs: Sequence[Program] | None
     written: Sequence[Written | Difference] | None
-    files: Callable[[], Mapping[Path, str]]
+    files: Callable[[], Mapping[Path, str | bytes]]
     note: str = ""
 
 
@@ -80,6 +80,10 @@ def target_of(name: str, output: Path | None, stem: str) -> Target:
             return _Rust(path)
         case "ament":
             return _Package(path)
+        case "tests":
+            from ltlc.interfaces.building.runs import Tests  # takes time, as what writes recordings does
+
+            return Tests(path)
         case _:
             return _Text(name, path)
 

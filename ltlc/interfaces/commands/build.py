@@ -100,7 +100,7 @@ def run(options: argparse.Namespace) -> int:
     return _write({**certificates, **files}, () if options.quiet else [*certificates, *target.told])
 
 
-def _write(files: Mapping[Path, str], told: Sequence[Path]) -> int:
+def _write(files: Mapping[Path, str | bytes], told: Sequence[Path]) -> int:
     """Write all the files or none, and name those that are `told`; the exit code."""
     try:
         write_all(files)

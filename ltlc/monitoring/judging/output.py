@@ -16,11 +16,12 @@ from __future__ import annotations
 
 import io
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, NamedTuple
 
 from mcap.writer import Writer
 from rosbags.typesys import Stores, get_typestore  # noqa: TID251
+from rosbags.typesys.store import Typestore  # noqa: TID251
 
 from ltlc import __version__
 from ltlc.inputs.recordings.trails import Trail
@@ -128,19 +129,28 @@ def _ends(session: Session) -> tuple[Nanoseconds, Nanoseconds]:
 def _written(messages: list[_Message], provenance: Mapping[str, Any]) -> bytes:
     """`messages`, in CDR, with the definitions of their types, and what they were made of."""
     store = get_typestore(Stores.ROS2_JAZZY)
+    typed = (
+        (time, topic, type_, _message(store.types, type_, fields, time)) for time, topic, type_, fields in messages
+    )
+    return mcap_of(typed, store, provenance)
+
+
+def mcap_of(
+    messages: Iterable[tuple[Nanoseconds, str, str, Any]], store: Typestore, provenance: Mapping[str, Any]
+) -> bytes:
+    """A file of messages, each with its time, topic, type, and itself; the definitions are those of `store`."""
     file = io.BytesIO()
     writer = Writer(file)
     writer.start(profile="ros2", library=f"ltlc {__version__}")
     schemas: dict[str, int] = {}
     channels: dict[str, int] = {}
-    for sequence, (time, topic, type_, fields) in enumerate(messages):
+    for sequence, (time, topic, type_, message) in enumerate(messages):
         if type_ not in schemas:
             definition = store.generate_msgdef(type_, ros_version=2)[0].encode()
             schemas[type_] = writer.register_schema(type_, "ros2msg", definition)
         if topic not in channels:
             channels[topic] = writer.register_channel(topic, "cdr", schemas[type_])
-        data = bytes(store.serialize_cdr(_message(store.types, type_, fields, time), type_))
-        writer.add_message(channels[topic], time, data, time, sequence)
+        writer.add_message(channels[topic], time, bytes(store.serialize_cdr(message, type_)), time, sequence)
     writer.add_metadata("ltlc", {"provenance": json.dumps(provenance)})
     writer.finish()
     return file.getvalue()
