@@ -22,6 +22,7 @@ from ltlc.base.diagnostics import Diagnostic
 from ltlc.base.files import refuse_unwritable
 from ltlc.compiler import Compiled
 from ltlc.dataclass import dataclass
+from ltlc.program.guards import GuardProgram
 from ltlc.specification.specification import Specification
 
 _NODE = "ROS 2"
@@ -65,8 +66,14 @@ class Target(Protocol):
         """Raise OSError if the output cannot be written."""
         ...
 
-    def make(self, compiled: Sequence[Compiled], specification: Specification, messages: Messages) -> Made:
-        """The code. Raises UnfitError."""
+    def make(
+        self,
+        compiled: Sequence[Compiled],
+        specification: Specification,
+        messages: Messages,
+        guards: Sequence[GuardProgram] = (),
+    ) -> Made:
+        """The code, that of `guards` included if the target has guards. Raises UnfitError."""
         ...
 
 
@@ -98,7 +105,13 @@ class _Text:
     def refuse(self) -> None:
         refuse_unwritable(self.path)
 
-    def make(self, compiled: Sequence[Compiled], specification: Specification, messages: Messages) -> Made:
+    def make(
+        self,
+        compiled: Sequence[Compiled],
+        specification: Specification,
+        messages: Messages,
+        guards: Sequence[GuardProgram] = (),
+    ) -> Made:
         try:
             text = backends.emit(self.name, compiled, specification)
         except NotInTargetError:
@@ -131,7 +144,13 @@ class _C:
         for path in self.told:
             refuse_unwritable(path)
 
-    def make(self, compiled: Sequence[Compiled], specification: Specification, messages: Messages) -> Made:
+    def make(
+        self,
+        compiled: Sequence[Compiled],
+        specification: Specification,
+        messages: Messages,
+        guards: Sequence[GuardProgram] = (),
+    ) -> Made:
         from ltlc.assurance.c_programs import c_programs  # takes time, as what reads C does
         from ltlc.assurance.reading.c.files import written as written_in_c
         from ltlc.backends import c
@@ -163,7 +182,13 @@ class _Rust:
     def refuse(self) -> None:
         refuse_unwritable(self.path)
 
-    def make(self, compiled: Sequence[Compiled], specification: Specification, messages: Messages) -> Made:
+    def make(
+        self,
+        compiled: Sequence[Compiled],
+        specification: Specification,
+        messages: Messages,
+        guards: Sequence[GuardProgram] = (),
+    ) -> Made:
         from ltlc.assurance.c_programs import rust_programs  # takes time, as what reads Rust does
         from ltlc.assurance.reading.rust import written as written_in_rust
         from ltlc.backends import rust
@@ -220,8 +245,14 @@ class _Package:
     def refuse(self) -> None:
         _ = self.metadata
 
-    def make(self, compiled: Sequence[Compiled], specification: Specification, messages: Messages) -> Made:
-        node = _Text("ros2", self.path).make(compiled, specification, messages)
+    def make(
+        self,
+        compiled: Sequence[Compiled],
+        specification: Specification,
+        messages: Messages,
+        guards: Sequence[GuardProgram] = (),
+    ) -> Made:
+        node = _Text("ros2", self.path).make(compiled, specification, messages, guards)
 
         def files() -> Mapping[Path, str]:
             monitored = [each for each in node.programs or () if isinstance(each, Monitored)]
