@@ -11,7 +11,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import field
 from functools import cached_property
 from itertools import product
-from typing import NamedTuple, assert_never
+from typing import NamedTuple
 
 from ltlc.dataclass import dataclass
 from ltlc.program.expressions import Apply, Expression, Literal
@@ -26,10 +26,9 @@ from ltlc.semantics.arenas import Arena, Joint, Outcome, Place, Region, Standing
 from ltlc.semantics.diagrams import Diagram, Diagrams, of_predicate
 from ltlc.semantics.monitor import Decision, Target
 from ltlc.semantics.ordered_machine import Timed
-from ltlc.semantics.reset_machine import Clocks
 from ltlc.semantics.trackers import State
 from ltlc.specification.atoms import Atom
-from ltlc.specification.expressions import Read, operands, reads
+from ltlc.specification.expressions import Input, inputs, operands
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,25 +43,19 @@ class Placed:
 
     def states(self, at: Standing) -> list[int]:
         """The states in which the machine can be where the property stands. Raises NotToldError."""
-        match at:
-            case Outcome.WAITING:
-                return []
-            case Outcome.SATISFIED | Outcome.VIOLATED:
-                verdicts = enumerate(each.verdict for each in self.machine.states)
-                return [state for state, verdict in verdicts if verdict.value == at.value]
-            case Place(_, Timed()):
-                raise NotToldError("it depends on the order in which clocks pass their bounds whether it may rest")
-            case Place(judged, Clocks() as clocks):
-                # Whether a clock has just begun, the time tells.
-                return [q for q, of in self.places.items() if (judged, clocks.states) in _without_begun(of)]
-            case _:
-                assert_never(at)
+        if isinstance(at, Outcome):
+            verdicts = enumerate(each.verdict for each in self.machine.states)
+            return [state for state, verdict in verdicts if verdict.value == at.value]
+        if isinstance(at.clocks, Timed):
+            raise NotToldError("it depends on the order in which clocks pass their bounds whether it may rest")
+        # Whether a clock has just begun, the time tells.
+        return [q for q, of in self.places.items() if (at.state, at.reset.states) in _without_begun(of)]
 
 
 class Held(NamedTuple):
     """A condition on values that is held: `known` if nothing that it compares is NaN, and whether it `holds`."""
 
-    inputs: tuple[Read, ...]
+    inputs: tuple[Input, ...]
     known: Expression
     holds: Expression
 
@@ -93,11 +86,11 @@ def resting(arena: Arena, region: Region, conditions: Mapping[str, Atom], parts:
 
 def held(atom: Atom) -> Held:
     """The condition of an atom, which is not known where something in it is NaN."""
-    inputs = tuple(dict.fromkeys(r for operand in operands(atom.condition) for r in reads(operand)))
-    numbers = guards(map(read, inputs), [atom])
+    wanted = tuple(dict.fromkeys(i for operand in operands(atom.condition) for i in inputs(operand)))
+    numbers = guards(map(read, wanted), [atom])
     measured = tuple(Apply(Primitive.MEASURED, (n,)) for n in numbers if not n.type.scalar.is_integer)
     known = normal(joined(Primitive.AND, measured)) if measured else Literal(True, BOOL)
-    return Held(inputs, known, normal(condition(atom.condition)))
+    return Held(wanted, known, normal(condition(atom.condition)))
 
 
 class _Axis(NamedTuple):
@@ -116,7 +109,7 @@ class _Lowered:
 
     def __init__(self, arena: Arena, conditions: Mapping[str, Atom], parts: Sequence[Placed]) -> None:
         self.arena, self.parts = arena, parts
-        self.conditions = tuple(map(held, conditions.values()))
+        self.conditions = conditions
         self.levels = {name: level for level, name in enumerate(arena.read)}
         self.before, self.diagrams = Diagrams(), Diagrams()
         self.impossible = self.before.negation(of_predicate(arena.alphabet.as_formula(), self.before, self.levels))
@@ -219,8 +212,9 @@ class _Lowered:
         )
         split = (self.diagrams.split(node) for node in nodes)
         decisions = (Decision(levels.index(level), targets[low], targets[high]) for level, low, high in split)
-        names = tuple([*self.known][n] for n in numbers)
-        return Resting(names, tuple(self.conditions[n] for n in numbers), questions, tuple(decisions), targets[root])
+        names = tuple([*self.conditions][n] for n in numbers)
+        asked_of = tuple(held(self.conditions[name]) for name in names)
+        return Resting(names, asked_of, questions, tuple(decisions), targets[root])
 
 
 def _sent_axes(most: Sequence[int]) -> Iterator[_Axis]:

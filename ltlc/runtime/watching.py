@@ -47,7 +47,8 @@ class Watching:
         self.is_blind = False
         self._plan = guards
         properties = [plan.properties[number] for number in guards.parts]
-        wanted = [i for of in (*properties, *guards.conditions) for i in of.inputs]
+        wanted = [i for of in properties for i in of.inputs]
+        wanted += [i for condition in guards.conditions for i in condition.inputs]
         self._sampler = Sampler(plan.signals, [*wanted, *guards.awaited])
         self._parts = [
             _Part(of, self._sampler, number in guards.assumed)

@@ -100,7 +100,7 @@ class _Comparison:
                 found |= {Asked(Asks.STANDS, k, state): state == way for state in range(len(part.machine.states))}
             yield found
 
-    def _states(self, k: int, at: Standing) -> list[int | None]:
+    def _states(self, k: int, at: Standing) -> Sequence[int | None]:
         """The states of a machine at a place, or None where it has not begun."""
         part = self.parts[k]
         if at is Outcome.WAITING:

@@ -72,4 +72,6 @@ def _require_conditions(file: PythonFile, node: ast.expr | None, program: GuardP
                     expression_of(file, function, given) == expression for function, expression in right
                 ):
                     continue
+            case _:
+                pass
         raise NotUnderstoodError(f"the guard of {program.guards[0].out} holds another condition than it should")

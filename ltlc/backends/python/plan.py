@@ -175,38 +175,35 @@ def _property(plan: _Plan, compiled: Compiled) -> Group:
 
 def _guards(plan: _Plan, of: GuardProgram) -> Group:
     """Guards that share properties; the functions of conditions become blocks."""
-    questions = ((f"Asks.{asks.name}", *map(str, numbers)) for asks, *numbers in of.resting.questions)
-    decisions = (tuple(map(str, decision)) for decision in of.resting.decisions)
-    return Group(
-        "GuardPlan(",
-        (
-            tuple_of((literal(guard.out) for guard in of.guards), "outs=("),
-            f"lead={of.lead}",
-            tuple_of(map(str, of.parts), "parts=("),
-            tuple_of(map(str, sorted(of.assumed)), "assumed=("),
-            tuple_of(map(literal, of.spoken), "spoken=("),
-            tuple_of(map(_input, of.awaited), "awaited=("),
-            tuple_of(map(str, of.most), "most=("),
-            tuple_of([_held(plan, each) for each in of.resting.conditions], "conditions=(", wide=True),
-            tuple_of((Group("Asked(", each, ")") for each in questions), "questions=("),
-            tuple_of(map(tuple_of, decisions), "decisions=("),
-            f"rests={of.resting.root}",
-        ),
-        ")",
-        wide=True,
+    resting = of.resting
+    questions = (Group("Asked(", (f"Asks.{q.asks.name}", str(q.of), str(q.number)), ")") for q in resting.questions)
+    parts_: tuple[Group | str, ...] = (
+        tuple_of((literal(guard.out) for guard in of.guards), "outs=("),
+        f"lead={of.lead}",
+        tuple_of(map(str, of.parts), "parts=("),
+        tuple_of(map(str, sorted(of.assumed)), "assumed=("),
+        tuple_of(map(literal, of.spoken), "spoken=("),
+        tuple_of(map(_input, of.awaited), "awaited=("),
+        tuple_of(map(str, of.most), "most=("),
+        tuple_of([_held(plan, each) for each in resting.conditions], "conditions=(", wide=True),
+        tuple_of(questions, "questions=("),
+        tuple_of((tuple_of(map(str, decision)) for decision in resting.decisions), "decisions=("),
+        f"rests={resting.root}",
     )
+    return Group("GuardPlan(", parts_, ")", wide=True)
 
 
 def _held(plan: _Plan, of: Held) -> Group:
     """A condition that is held: its two functions become blocks."""
-    names = []
-    for what, value in (("known", of.known), ("holds", of.holds)):
-        names.append(plan.names.unique(f"guard_{what}"))
-        meaning = (
-            "Whether a condition that the guard holds compares no NaN." if what == "known" else "Whether it holds."
-        )
-        _function(plan, names[-1], of.inputs, "bool", lambda speller, value=value: [speller.code(value)], meaning)
-    return Group("HeldCondition(", (tuple_of(map(_input, of.inputs)), *names), ")")
+
+    def function(what: str, value: Value, meaning: str) -> str:
+        name = plan.names.unique(f"guard_{what}")
+        _function(plan, name, of.inputs, "bool", lambda speller: [speller.code(value)], meaning)
+        return name
+
+    known = function("known", of.known, "Whether a condition that the guard holds compares no NaN.")
+    holds = function("holds", of.holds, "Whether it holds.")
+    return Group("HeldCondition(", (tuple_of(map(_input, of.inputs)), known, holds), ")")
 
 
 def _written(specification: PropertySpecification) -> Iterator[str]:
