@@ -94,7 +94,7 @@ def held(atom: Atom) -> Held:
 
 
 class _Axis(NamedTuple):
-    """What is asked one after the other, with the value that there is if it is so; `otherwise`, if nothing is."""
+    """Questions of which at most one is so, with the value that there is then; `otherwise`, if none is."""
 
     asked: tuple[tuple[Asked, object], ...]
     otherwise: object = None
@@ -148,10 +148,11 @@ class _Lowered:
         for (value, *rest), letters in where.items():
             by_value.setdefault(value, {})[tuple(rest)] = letters
         axis, *further = axes
-        found = self._along(by_value.get(axis.otherwise, {}), further)
+        found = otherwise = self._along(by_value.get(axis.otherwise, {}), further)
         for question, value in reversed(axis.asked):
             there = self._along(by_value.get(value, {}), further)
-            found = self.diagrams.choose(self._variables[question], there, found)
+            if there != otherwise:
+                found = self.diagrams.choose(self._variables[question], there, found)
         return found
 
     def _held(self, letters: Diagram) -> Diagram:
@@ -221,7 +222,7 @@ def _sent_axes(most: Sequence[int]) -> Iterator[_Axis]:
     """Whether the guards are silent, and how many messages have left on each topic."""
     yield _Axis(((Asked(Asks.SILENT), True),), False)
     for out, limit in enumerate(most):
-        yield _Axis(tuple((Asked(Asks.SENT, out, n), n) for n in range(limit, 0, -1)), 0)
+        yield _Axis(tuple((Asked(Asks.SENT, out, n), n) for n in range(1, limit + 1)), 0)
 
 
 def _part_axis(k: int, machine: Machine) -> _Axis:

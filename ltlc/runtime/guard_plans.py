@@ -17,7 +17,7 @@ class Asks(Enum):
     """What a decision about rest asks; `of` and `number` are those of its `Asked`.
 
     SILENT: whether a topic that is waited for has not spoken, or lacks a value
-    SENT: whether `number` messages or more have left on the guards' topic `of`
+    SENT: whether `number` messages have left on the guards' topic `of`, as counted
     WAITS: whether the property `of` has not begun
     STANDS: whether the property `of` has begun and its machine is in the state `number`
     KNOWN: whether the condition `of` has all its values, and compares no NaN

@@ -111,7 +111,7 @@ class Watching:
             case Asks.SILENT:
                 return self._sent is None
             case Asks.SENT:
-                return self._sent is not None and self._sent[asked.of] >= asked.number
+                return self._sent is not None and self._sent[asked.of] == asked.number
             case Asks.WAITS:
                 return self._monitors[asked.of].verdict is Verdict.NOT_STARTED
             case Asks.STANDS:

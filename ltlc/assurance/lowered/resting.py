@@ -8,7 +8,7 @@ else. Conditions are compared with what `lowered.meaning` says. Nothing is used 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from itertools import pairwise, product
+from itertools import combinations, product
 
 from ltlc.assurance.lowered.meaning import compared, said, truth
 from ltlc.assurance.lowered.truths import Truths
@@ -92,7 +92,7 @@ class _Comparison:
         sent = {Asked(Asks.SILENT): joint.sent is None}
         for out, most in enumerate(self.arena.most):
             left = 0 if joint.sent is None else joint.sent[out]
-            sent |= {Asked(Asks.SENT, out, n): n <= left for n in range(1, most + 1)}
+            sent |= {Asked(Asks.SENT, out, n): n == left for n in range(1, most + 1)}
         for ways in product(*(self._states(k, at) for k, at in enumerate(joint.standings))):
             found = dict(sent)
             for k, (part, way) in enumerate(zip(self.parts, ways, strict=True)):
@@ -114,16 +114,17 @@ class _Comparison:
         """What is always so of the questions: they have one answer."""
         d = self.diagrams
         for out, most in enumerate(self.arena.most):
-            counts = [self.asked(Asked(Asks.SENT, out, n)) for n in range(1, most + 1)]
-            yield from (d.disjunction(d.negation(more), less) for less, more in pairwise(counts))
-            yield d.negation(d.conjunction(self.asked(Asked(Asks.SILENT)), counts[0]))
+            counts = (Asked(Asks.SENT, out, n) for n in range(1, most + 1))
+            yield from self._at_most_one([Asked(Asks.SILENT), *counts])
         for k, part in enumerate(self.parts):
             states = [Asked(Asks.WAITS, k), *(Asked(Asks.STANDS, k, q) for q in range(len(part.machine.states)))]
-            some = d.false
-            for own in map(self.asked, states):
-                yield d.negation(d.conjunction(some, own))
-                some = d.disjunction(some, own)
-            yield some
+            yield from self._at_most_one(states)
+            yield d.negation(self._all(d.negation(self.asked(each)) for each in states))
+
+    def _at_most_one(self, questions: Sequence[Asked]) -> Iterator[Diagram]:
+        d = self.diagrams
+        for one, other in combinations(map(self.asked, questions), 2):
+            yield d.negation(d.conjunction(one, other))
 
     def _all(self, parts: Iterator[Diagram]) -> Diagram:
         found = self.diagrams.true

@@ -107,7 +107,7 @@ def plan_code(
     """
     plan = _Plan(specification.source, given, Names(RUNTIME_NAMES | MODULE_NAMES | frozenset(taken)), most_ids)
     properties = [_property(plan, c) for c in compiled]
-    parts = (
+    parts: tuple[Group | str, ...] = (
         tuple_of(plan.signals.values(), "signals=(", wide=True),
         tuple_of(properties, "properties=(", wide=True),
         f"rate={specification.rate!r}",
