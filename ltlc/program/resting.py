@@ -94,10 +94,14 @@ def held(atom: Atom) -> Held:
 
 
 class _Axis(NamedTuple):
-    """Questions of which at most one is so, with the value that there is then; `otherwise`, if none is."""
+    """Questions of which at most one is so, with the value that there is then; `otherwise`, if none is.
+
+    Where one is, none of those that it `excludes` is so, which are asked later.
+    """
 
     asked: tuple[tuple[Asked, object], ...]
     otherwise: object = None
+    excludes: tuple[Asked, ...] = ()
 
 
 Where = Mapping[tuple[object, ...], Diagram]
@@ -148,7 +152,8 @@ class _Lowered:
         for (value, *rest), letters in where.items():
             by_value.setdefault(value, {})[tuple(rest)] = letters
         axis, *further = axes
-        found = otherwise = self._along(by_value.get(axis.otherwise, {}), further)
+        found = self._along(by_value.get(axis.otherwise, {}), further)
+        otherwise = self.diagrams.given({self.questions.index(each): False for each in axis.excludes}, found)
         for question, value in reversed(axis.asked):
             there = self._along(by_value.get(value, {}), further)
             if there != otherwise:
@@ -220,9 +225,11 @@ class _Lowered:
 
 def _sent_axes(most: Sequence[int]) -> Iterator[_Axis]:
     """Whether the guards are silent, and how many messages have left on each topic."""
-    yield _Axis(((Asked(Asks.SILENT), True),), False)
-    for out, limit in enumerate(most):
-        yield _Axis(tuple((Asked(Asks.SENT, out, n), n) for n in range(1, limit + 1)), 0)
+    sent = [
+        _Axis(tuple((Asked(Asks.SENT, out, n), n) for n in range(1, limit + 1)), 0) for out, limit in enumerate(most)
+    ]
+    yield _Axis(((Asked(Asks.SILENT), True),), False, tuple(question for axis in sent for question, _ in axis.asked))
+    yield from sent
 
 
 def _part_axis(k: int, machine: Machine) -> _Axis:
