@@ -28,7 +28,7 @@ JUDGE_EACH = ("ros2", "ament", "rust")
 """The targets that judge a property for each id; Rust itself refuses those for which a table is not all they need."""
 
 
-GUARDED: tuple[str, ...] = ()
+GUARDED = ("c",)
 """The targets of code that have guards."""
 
 

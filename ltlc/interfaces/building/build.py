@@ -17,7 +17,14 @@ from ltlc.dataclass import dataclass
 from ltlc.frontend.language import types_for
 from ltlc.interfaces.building.guards import NoRegionError, difference, guard_entries, guard_programs
 from ltlc.interfaces.building.targets import Made, Target, UnfitError
-from ltlc.interfaces.building.wording import GATE_MEMORY, GATE_SECONDS, failures, guard_failure, summary
+from ltlc.interfaces.building.wording import (
+    GATE_MEMORY,
+    GATE_SECONDS,
+    failures,
+    guard_code_failure,
+    guard_failure,
+    summary,
+)
 from ltlc.program.guards import GuardProgram
 from ltlc.semantics.certificate import Certificate
 from ltlc.semantics.certificate_reader import UnreadableError, parse
@@ -54,6 +61,8 @@ class Built:
         for program, entry in zip(self.guards, self.entries, strict=True):
             if (wrong := difference(program, entry, self.compiled)) is not None:
                 found.append(guard_failure(self.specification, program, wrong))
+        if not found and (wrong_code := self.made.flaw()) is not None:
+            found.append(guard_code_failure(self.specification, wrong_code))
         return found
 
     def certificates(self, with_programs: bool = False) -> str:

@@ -104,6 +104,13 @@ def guard_failure(specification: Specification, program: GuardProgram, wrong: Di
     return diagnostic("LTL710", specification.source, guard.span, message, help=_OUR_FAULT)
 
 
+def guard_code_failure(specification: Specification, wrong: str) -> Diagnostic:
+    """That the code of a guard does something else than its program."""
+    guard = specification.guards[0]
+    message = f"the code of the guard of {guard.out} behaves incorrectly: {wrong}"
+    return diagnostic("LTL703", specification.source, guard.span, message, help=_OUR_FAULT)
+
+
 def _advice(refused: NotCertified) -> str:
     if refused.too_late:
         return _TOO_LATE
