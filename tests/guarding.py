@@ -18,15 +18,16 @@ from ltlc.assurance.evidence.certified import entry_of
 from ltlc.assurance.exactness import checked_certificate
 from ltlc.automata import Budget
 from ltlc.base.source import Source
-from ltlc.compiler import compile_specification
+from ltlc.compiler import Compiled, compile_specification
 from ltlc.frontend.language import load_text
-from ltlc.interfaces.building.guards import guard_entries
+from ltlc.interfaces.building.guards import guard_entries, guard_programs
+from ltlc.program.guards import GuardProgram
 from ltlc.semantics import finite
 from ltlc.semantics.arenas import Arena, Joint, Outcome, Place, Standing, standing
 from ltlc.semantics.certificate import Certificate
 from ltlc.semantics.certificate_text import to_text
 from ltlc.semantics.encodings import EPISODE
-from ltlc.semantics.region_text import guard_lines
+from ltlc.semantics.region_text import GuardEntry, guard_lines
 from ltlc.semantics.timed_run import TimedRun
 from ltlc.semantics.words import Letter
 from ltlc.specification import evaluation
@@ -295,3 +296,12 @@ class Brute:
 
     def _answers(self, events: tuple[Event, ...], now: int) -> Iterator[tuple[Event, ...]]:
         return ((*events, (now, self.drawn.out, tuple(v.items()))) for v in self.drawn.fallbacks.values())
+
+
+def programs(text: str) -> tuple[Specification, list[Compiled], list[GuardEntry], list[GuardProgram]]:
+    """The specification in `text`, its properties, and the regions and programs of its guards."""
+    specification, problems = load_text(Source("guard", text))
+    assert specification is not None, [(each.code, each.message) for each in problems]
+    compiled, _ = compile_specification(specification, EPISODE, Budget())
+    entries = guard_entries(specification, compiled)
+    return specification, compiled, entries, guard_programs(specification, compiled, entries)

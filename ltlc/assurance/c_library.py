@@ -9,6 +9,7 @@ from typing import Any
 
 from ltlc.assurance.library import LIBRARY, Loaded, load
 from ltlc.backends.c import Files
+from ltlc.backends.c.guards import GuardFiles
 from ltlc.backends.c.ids import Table
 from ltlc.backends.c.instances import OpenTable
 from ltlc.backends.c.types import pointer
@@ -36,22 +37,23 @@ def compiler() -> str | None:
 
 
 class Library(Loaded):
-    """The monitors of some emitted files, compiled by `compiler`. Raises CompilerError, ScratchError."""
+    """The monitors of some emitted files, compiled by `compiler`, and a `guard`. Raises CompilerError, ScratchError."""
 
-    def __init__(self, files: Files, path: str) -> None:
+    def __init__(self, files: Files, path: str, guard: GuardFiles | None = None) -> None:
         with scratch() as folder:
-            functions = _load(files, folder, path)
+            functions = _load(files, folder, path, guard)
         super().__init__(functions, list(files.samples.group_of), list(files.samples.heard))
 
 
-def _load(files: Files, folder: Path, path: str) -> Any:
+def _load(files: Files, folder: Path, path: str, guard: GuardFiles | None) -> Any:
     """Compile in a child, whose time and memory are bounded."""
-    stem = files.stem
-    (folder / f"{stem}.h").write_text(files.header, encoding="utf-8")
-    (folder / f"{stem}.c").write_text(files.source, encoding="utf-8")
-    (folder / "gate.c").write_text("\n".join(_glue(files)), encoding="utf-8")
-    command = [path, *FLAGS, "-O1", "-fPIC", "-shared", f"{stem}.c", "gate.c", "-o", LIBRARY, "-lm"]
-    return load(command, folder)
+    texts = {f"{files.stem}.h": files.header, f"{files.stem}.c": files.source}
+    texts |= {} if guard is None else {f"{guard.stem}.h": guard.header, f"{guard.stem}.c": guard.source}
+    glue = _glue(files) if guard is None else (*_glue(files), *_glue_of(guard, files))
+    for name, text in {**texts, "gate.c": "\n".join(glue)}.items():
+        (folder / name).write_text(text, encoding="utf-8")
+    sources = [name for name in (*texts, "gate.c") if name.endswith(".c")]
+    return load([path, *FLAGS, "-O1", "-fPIC", "-shared", *sources, "-o", LIBRARY, "-lm"], folder)
 
 
 def _glue(files: Files) -> Iterator[str]:
@@ -94,6 +96,28 @@ def _glue(files: Files) -> Iterator[str]:
             yield from _of_table(prefix, table)
         case OpenTable() as table:
             yield from _of_instances(prefix, table)
+
+
+def _glue_of(guard: GuardFiles, files: Files) -> Iterator[str]:
+    """The guard beside them; its decisions are numbers, and so are the topics other than that of commands."""
+    own, samples = guard.prefix, f"const {files.prefix}_samples *s"
+    yield f'#include "{guard.stem}.h"'
+    yield f"size_t gate_guard_size(void); size_t gate_guard_size(void) {{ return sizeof({own}_run); }}"
+    yield f"void gate_guard_init({own}_run *g); void gate_guard_init({own}_run *g) {{ {own}_init(g); }}"
+    head = f"bool gate_guard_lost(const {own}_run *g)"
+    yield f"{head}; {head} {{ return g->has_lost; }}"
+    for head, call in (
+        (f"int gate_guard_command({own}_run *g, int64_t time, {samples})", f"{own}(g, time, s)"),
+        (f"int gate_guard_act({own}_run *g, int64_t time)", f"{own}_act(g, time)"),
+        (f"int64_t gate_guard_due(const {own}_run *g)", f"{own}_due(g)"),
+    ):
+        is_there = f"{call.split('(')[0]}(" in guard.header
+        unused = "(void)g, (void)time, 0" if "time" in head else f"(void)g, {files.prefix.upper()}_NEVER"
+        yield f"{head}; {head} {{ return {f'({head.split()[0]}){call}' if is_there else unused}; }}"
+    head = f"int gate_guard_hear({own}_run *g, int64_t time, {samples}, int topic)"
+    cases = (f"case {n}: return (int){own}_hear_{name}(g, time, s);" for n, name in enumerate(guard.others.values()))
+    yield f"{head}; {head}"
+    yield f"{{ (void)g; (void)time; (void)s; switch (topic) {{ {' '.join(cases)} default: return -1; }} }}"
 
 
 def _of_monitors(prefix: str) -> Iterator[str]:

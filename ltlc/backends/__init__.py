@@ -29,6 +29,10 @@ JUDGE_EACH = ("ros2", "ament", "rust")
 """The targets that judge a property for each id; Rust itself refuses those for which a table is not all they need."""
 
 
+GUARDED = ("c",)
+"""The targets of code that have guards."""
+
+
 def emit(target: str, compiled: Sequence[Compiled], specification: Specification) -> str:
     """The text of the output for one of the targets other than C. Raises NotInTargetError."""
     if target not in JUDGE_EACH:

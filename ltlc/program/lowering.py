@@ -281,7 +281,7 @@ def _count(count: e.Count, is_any: bool) -> Expression:
         if s not in count.singles and not excludes_nan(count.predicate, conditions, s)
     )
     measured = [Apply(P.MEASURED, (lowered(side),)) for side in asked]
-    guard = _joined(P.AND, [*reversed(measured), predicate(count.predicate, conditions)])
+    guard = joined(P.AND, [*reversed(measured), predicate(count.predicate, conditions)])
     lists = (dict.fromkeys(lowered(element.array) for element in elements) for elements in count.lists)
     return Count(tuple(map(tuple, lists)), guard, is_any)
 
@@ -303,7 +303,7 @@ def has_sample(signal: e.Signal) -> Expression:
     ]
     measured = [Apply(P.MEASURED, (found,)) for found in map(lowered, (signal.definition, *asked)) if _has_nan(found)]
     holds = [] if signal.when.predicate == ltl.TRUE else [predicate(signal.when.predicate, conditions)]
-    return settled(_joined(P.AND, [*measured, *holds]), True) if measured or holds else Literal(True, BOOL)
+    return settled(joined(P.AND, [*measured, *holds]), True) if measured or holds else Literal(True, BOOL)
 
 
 def _has_nan(expression: Expression) -> bool:
@@ -334,9 +334,9 @@ def predicate(formula: ltl.Formula, conditions: Mapping[str, e.Condition]) -> Ex
         case ltl.Not(operand):
             return negation(predicate(operand, conditions))
         case ltl.And(left, right):
-            return _joined(P.AND, [predicate(left, conditions), predicate(right, conditions)])
+            return joined(P.AND, [predicate(left, conditions), predicate(right, conditions)])
         case ltl.Or(left, right):
-            return _joined(P.OR, [predicate(left, conditions), predicate(right, conditions)])
+            return joined(P.OR, [predicate(left, conditions), predicate(right, conditions)])
         case _:
             raise TypeError(f"not a state predicate: {formula}")
 
@@ -352,7 +352,7 @@ def negation(found: Expression) -> Expression:
             return Apply(P.NOT, (found,))
 
 
-def _joined(primitive: Primitive, operands: Sequence[Expression]) -> Expression:
+def joined(primitive: Primitive, operands: Sequence[Expression]) -> Expression:
     """The conjunction or disjunction, flat."""
     flat = tuple(flattened(primitive, operands))
     return flat[0] if len(flat) == 1 else Apply(primitive, flat)

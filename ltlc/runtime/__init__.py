@@ -49,6 +49,7 @@ MODULES = (
     "ltlc.runtime.functions",
     "ltlc.runtime.times",
     "ltlc.runtime.sampling",
+    "ltlc.runtime.guard_plans",
     "ltlc.runtime.properties",
     "ltlc.runtime.episodes",
     "ltlc.runtime.reasons",

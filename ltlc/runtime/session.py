@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from ltlc.dataclass import dataclass
+from ltlc.runtime.guard_plans import GuardPlan
 from ltlc.runtime.properties import MonitoredProperty
 from ltlc.runtime.sampling import Derived, Reading, Sampler
 from ltlc.runtime.ticks import Paces
@@ -16,13 +17,15 @@ from ltlc.runtime.tracking import Observer, RecordedTrack, Track
 class Plan:
     """What to monitor: signals (each after its parts), properties and settings.
 
-    `rate` is in Hz and `timeout` in ns; None where there is none.
+    `rate` is in Hz and `timeout` in ns; None where there is none. `guards` keep some of
+    the properties.
     """
 
     signals: tuple[Reading | Derived, ...]
     properties: tuple[MonitoredProperty, ...]
     rate: float | None = None
     timeout: int | None = None
+    guards: tuple[GuardPlan, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

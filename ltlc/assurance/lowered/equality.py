@@ -25,6 +25,7 @@ from ltlc.dataclass import dataclass
 from ltlc.program.expressions import Expression, reads_of
 from ltlc.program.machine import Age, Base, Clock, Machine, Outcome
 from ltlc.program.normal import reached
+from ltlc.semantics import arenas
 from ltlc.semantics.diagrams import Diagram, rows
 from ltlc.semantics.monitor import Target, below
 from ltlc.semantics.reset_machine import Clocks, ResetMachine
@@ -35,9 +36,13 @@ from ltlc.semantics.trackers import Case
 
 @dataclass(frozen=True, slots=True)
 class Equal:
-    """The machine does what the monitor does, in all `situations`: its states, each with where its clocks can be."""
+    """The machine does what the monitor does, in all `situations`: its states, each with where its clocks can be.
+
+    `places` has where the monitor and its clocks can be in each state, unless the verdict is permanent.
+    """
 
     situations: int
+    places: Mapping[int, frozenset[arenas.Place]]
 
 
 def compare(machine: Machine, judged: Judged) -> Equal | Difference:
@@ -175,7 +180,11 @@ class _Comparison:
             if found is not None:
                 return found
             done[place] = held
-        return Equal(len(done))
+        places: dict[int, set[arenas.Place]] = {}
+        for place in done:
+            if place.clocks is not None and not place.first:
+                places.setdefault(place.state, set()).add(arenas.Place(place.judged, place.clocks))
+        return Equal(len(done), {state: frozenset(found) for state, found in places.items()})
 
     def reach(self, place: Place, letters: Diagram) -> None:
         """`letters` have led to `place`."""

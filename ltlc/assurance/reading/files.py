@@ -9,6 +9,7 @@ from dataclasses import replace
 from typing import Any
 
 from ltlc.assurance.reading.differences import difference
+from ltlc.assurance.reading.guards import require_guards
 from ltlc.assurance.reading.machines import machine_in
 from ltlc.assurance.reading.names import recalls
 from ltlc.assurance.reading.outcomes import Difference, ReadBack
@@ -18,6 +19,7 @@ from ltlc.assurance.reading.slicing import require_slicing
 from ltlc.assurance.reading.trees import NotUnderstoodError
 from ltlc.dataclass import dataclass
 from ltlc.program.expressions import Held, News, Read, Recent, reads_of
+from ltlc.program.guards import GuardProgram
 from ltlc.program.machine import Excused, Machine
 from ltlc.specification.specification import PropertySpecification
 
@@ -52,17 +54,20 @@ class Written:
 
 
 def written(
-    code: str, machines: Sequence[Machine], specifications: Sequence[PropertySpecification]
+    code: str,
+    machines: Sequence[Machine],
+    specifications: Sequence[PropertySpecification],
+    guards: Sequence[GuardProgram] = (),
 ) -> Sequence[Written | Difference]:
     """What is written of each of `machines` in a file of a target that can be read back, or its errors.
 
-    `specifications` tell where the signals come from that these read.
+    `specifications` tell where the signals come from that these read; `guards` keep some of them.
     """
     try:
         file = PythonFile(code)
         if "plan" not in file.names.bound:
             return _of_module(file, machines)
-        return _of_node(file, machines, specifications)
+        return _of_node(file, machines, specifications, guards)
     except NotUnderstoodError as error:
         return [Difference(str(error))] * len(machines)
 
@@ -208,7 +213,10 @@ def _caught_up(statement: ast.stmt) -> str | None:
 
 
 def _of_node(
-    file: PythonFile, machines: Sequence[Machine], specifications: Sequence[PropertySpecification]
+    file: PythonFile,
+    machines: Sequence[Machine],
+    specifications: Sequence[PropertySpecification],
+    guards: Sequence[GuardProgram],
 ) -> list[Written]:
     """Of a file whose function `plan` says what each class is given, in the runtime's terms."""
     match file.names.only("plan"):
@@ -218,6 +226,7 @@ def _of_node(
             said = {each.arg: each.value for each in keywords}
             match said.get("properties"):
                 case ast.Tuple(elts) if len(elts) == len(machines):
+                    require_guards(file, said.get("guards"), guards)
                     require_signals(file, said.get("signals"), (s for each in specifications for s in each.signals()))
                     return [_of_property(file, *each) for each in zip(elts, machines, specifications, strict=True)]
         case _:

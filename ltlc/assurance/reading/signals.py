@@ -90,7 +90,7 @@ def _require_signal(file: PythonFile, node: ast.expr, signals: dict[str, Signal]
             if len(functions) != len(right):
                 raise NotUnderstoodError(f"the signal `{name}` has other functions")
             for function, expression in zip(functions, right, strict=True):
-                if _expression(file, function, parts) != normal(expression):
+                if expression_of(file, function, parts) != normal(expression):
                     raise NotUnderstoodError(f"`{ast.unparse(function)}` does not compute `{name}`")
             return name
         case ast.Call(ast.Name("Reading"), [ast.Constant(str(name)), *_]) if name in signals:
@@ -111,7 +111,7 @@ def _reading(signal: Signal) -> tuple[object, ...]:
     return ("Reading", signal.name, source.topic, type_, *(("entry", entry) for entry in entries[:1]))
 
 
-def _expression(file: PythonFile, node: ast.expr, given: Sequence[Read]) -> Expression:
+def expression_of(file: PythonFile, node: ast.expr, given: Sequence[Read]) -> Expression:
     """What a function of the values of `given` returns."""
     if not isinstance(node, ast.Name):
         raise not_understood(node)

@@ -269,11 +269,7 @@ class PropertyWriter:
         if ready:
             found.append(If(_not_all(ready), ("return false",)))
         found.append("self->apart++")
-        found += [If(each, ("self->invalid++", "return false")) for each in self._missed()]
-        numbers = [name for i in self.inputs for name in [self.signals.nan_of(i)] if name]
-        numbers += [self.signals.values[part].latest for part in self.parameters if part in self.signals.values]
-        if numbers:
-            found.append(If(nan(numbers), ("self->invalid++", "return false")))
+        found += [If(each, ("self->invalid++", "return false")) for each in self.unfit()]
         if not self.late:
             found.append(self._start(self.wording))
         text = lines(found, INDENT)
@@ -317,6 +313,14 @@ class PropertyWriter:
         came = [flat(disjunction(self.signals.given.news(topics_of(n.signal)))) for n in self.aged]
         call = Call(f"{self.name}_hear", (Text(f"&monitors->{self.name}"), Text("time"), *map(Text, came)))
         return lines([Do("", call)], INDENT) if self.ages else []
+
+    def unfit(self) -> Iterator[Code]:
+        """Where one of these holds, what has come makes no step: a value is missing, or something is NaN."""
+        yield from self._missed()
+        numbers = [name for i in self.inputs for name in [self.signals.nan_of(i)] if name]
+        numbers += [self.signals.values[part].latest for part in self.parameters if part in self.signals.values]
+        if numbers:
+            yield nan(numbers)
 
     def _missed(self) -> Iterator[Code]:
         """Where one of these holds, messages have come without the value that they should bring."""

@@ -15,8 +15,9 @@ from ltlc.backends.python.monitors import MODULE_NAMES
 from ltlc.backends.python.plan import RUNTIME_NAMES, plan_code
 from ltlc.compiler import Compiled
 from ltlc.program.expressions import Expression as TypedExpression
+from ltlc.program.guards import GuardProgram
 from ltlc.program.lowering import condition, lowered, read
-from ltlc.runtime import functions, properties, sampling, session, slices, times
+from ltlc.runtime import functions, guard_plans, properties, sampling, session, slices, times
 from ltlc.runtime.sampling import Value
 from ltlc.runtime.session import Plan
 from ltlc.semantics import verdicts
@@ -45,10 +46,15 @@ def _loaded(expressions: Iterable[TypedExpression], wanted: Sequence[Read]) -> C
     return function
 
 
-def load_plan(compiled: Sequence[Compiled], specification: Specification, given: Collection[str] = ()) -> Plan:
-    """The plan of a run in which the signals called `given` come in themselves."""
-    namespace = _namespace(verdicts, functions, times, sampling, properties, session, slices)
-    code = "from __future__ import annotations\n" + plan_code(compiled, specification, given)
+def load_plan(
+    compiled: Sequence[Compiled],
+    specification: Specification,
+    given: Collection[str] = (),
+    guards: Sequence[GuardProgram] = (),
+) -> Plan:
+    """The plan of a run in which the signals called `given` come in themselves, and `guards` keep properties."""
+    namespace = _namespace(verdicts, functions, times, sampling, guard_plans, properties, session, slices)
+    code = "from __future__ import annotations\n" + plan_code(compiled, specification, given, guards=guards)
     exec(compile(code, "<plan>", "exec"), namespace)
     plan = namespace["plan"]()
     assert isinstance(plan, Plan)

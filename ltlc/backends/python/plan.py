@@ -33,8 +33,10 @@ from ltlc.program.expressions import Apply, reads_of
 from ltlc.program.expressions import Expression as Value
 from ltlc.program.expressions import parts as parts_of
 from ltlc.program.functions import ROWS, Nan, Primitive
+from ltlc.program.guards import GuardProgram
 from ltlc.program.lowering import has_sample, lowered, predicate, read
 from ltlc.program.machine import Machine
+from ltlc.program.resting import Held
 from ltlc.runtime import MODULES
 from ltlc.semantics import properties as p
 from ltlc.semantics.denotation import opens_by_itself
@@ -94,21 +96,23 @@ def plan_code(
     given: Collection[str] = (),
     taken: Collection[str] = (),
     most_ids: int | None = None,
+    guards: Sequence[GuardProgram] = (),
 ) -> str:
     """Definitions of functions and classes, the last a function `plan` that makes the plan.
 
     Signals whose name is in `given` are readings of a topic with that name, however the specification defines them.
     Functions and classes get names that are neither the runtime's nor in `taken`. An `each` without a limit keeps
-    `most_ids`, None is any number. `Verdict` must be defined before, and the other names of the runtime and
-    `INFINITY` when `plan` is called.
+    `most_ids`, None is any number. The `guards` keep some of the properties. `Verdict` must be defined before, and the
+    other names of the runtime and `INFINITY` when `plan` is called.
     """
     plan = _Plan(specification.source, given, Names(RUNTIME_NAMES | MODULE_NAMES | frozenset(taken)), most_ids)
     properties = [_property(plan, c) for c in compiled]
-    parts = (
+    parts: tuple[Group | str, ...] = (
         tuple_of(plan.signals.values(), "signals=(", wide=True),
         tuple_of(properties, "properties=(", wide=True),
         f"rate={specification.rate!r}",
         f"timeout={specification.timeout!r}",
+        *([tuple_of((_guards(plan, each) for each in guards), "guards=(", wide=True)] if guards else []),
     )
     made = Group("return Plan(", parts, ")", wide=True).lines(INDENT)
     function = ["def plan() -> Plan:", f'{INDENT}"""The signals, each after its parts, and the properties."""', *made]
@@ -167,6 +171,39 @@ def _property(plan: _Plan, compiled: Compiled) -> Group:
         case _:
             assert_never(specification.slicing)
     return Group("MonitoredProperty(", tuple(arguments), ")", wide=True)
+
+
+def _guards(plan: _Plan, of: GuardProgram) -> Group:
+    """Guards that share properties; the functions of conditions become blocks."""
+    resting = of.resting
+    questions = (Group("Asked(", (f"Asks.{q.asks.name}", str(q.of), str(q.number)), ")") for q in resting.questions)
+    parts_: tuple[Group | str, ...] = (
+        tuple_of((literal(guard.out) for guard in of.guards), "outs=("),
+        f"lead={of.lead}",
+        tuple_of(map(str, of.parts), "parts=("),
+        tuple_of(map(str, sorted(of.assumed)), "assumed=("),
+        tuple_of(map(literal, of.spoken), "spoken=("),
+        tuple_of(map(_input, of.awaited), "awaited=("),
+        tuple_of(map(str, of.most), "most=("),
+        tuple_of([_held(plan, each) for each in resting.conditions], "conditions=(", wide=True),
+        tuple_of(questions, "questions=("),
+        tuple_of((tuple_of(map(str, decision)) for decision in resting.decisions), "decisions=("),
+        f"rests={resting.root}",
+    )
+    return Group("GuardPlan(", parts_, ")", wide=True)
+
+
+def _held(plan: _Plan, of: Held) -> Group:
+    """A condition that is held: its two functions become blocks."""
+
+    def function(what: str, value: Value, meaning: str) -> str:
+        name = plan.names.unique(f"guard_{what}")
+        _function(plan, name, of.inputs, "bool", lambda speller: [speller.code(value)], meaning)
+        return name
+
+    known = function("known", of.known, "Whether a condition that the guard holds compares no NaN.")
+    holds = function("holds", of.holds, "Whether it holds.")
+    return Group("HeldCondition(", (tuple_of(map(_input, of.inputs)), known, holds), ")")
 
 
 def _written(specification: PropertySpecification) -> Iterator[str]:

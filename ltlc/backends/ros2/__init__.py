@@ -20,6 +20,7 @@ from ltlc.backends.templates import template
 from ltlc.backends.trees import prose
 from ltlc.base.provenance import provenance
 from ltlc.compiler import Compiled
+from ltlc.program.guards import GuardProgram
 from ltlc.runtime import MODULES
 from ltlc.specification.specification import MOST_IDS, Specification
 
@@ -27,8 +28,8 @@ OWN_NAMES = frozenset({"INFINITY", "PROVENANCE", "main", "monitor", "import_ros"
 """Names of the template; those made from a specification must not hide them."""
 
 
-def emit(compiled: Sequence[Compiled], specification: Specification) -> str:
-    """A ROS 2 node that monitors the properties `compiled` of `specification`.
+def emit(compiled: Sequence[Compiled], specification: Specification, guards: Sequence[GuardProgram] = ()) -> str:
+    """A ROS 2 node that monitors the properties `compiled` of `specification`, of which `guards` keep some.
 
     What it is made of, in the order of the file: the monitors and signals, functions that read the messages of each
     topic, and what is the same in every node: the runtime, and the part that speaks ROS. Raises NotInTargetError.
@@ -36,11 +37,16 @@ def emit(compiled: Sequence[Compiled], specification: Specification) -> str:
     require_topics(compiled)
     program = inline([*MODULES, *node.MODULES], [Import("sys"), Import("math")])
     name = literal(node_name(PurePath(specification.source.name).stem))
-    told = context(compiled, specification, program.names | OWN_NAMES)
+    told = context(compiled, specification, program.names | OWN_NAMES, guards)
     return template(__name__, "template.py.jinja").render(told, name=name, program=program)
 
 
-def context(compiled: Sequence[Compiled], specification: Specification, taken: frozenset[str]) -> dict[str, Any]:
+def context(
+    compiled: Sequence[Compiled],
+    specification: Specification,
+    taken: frozenset[str],
+    guards: Sequence[GuardProgram] = (),
+) -> dict[str, Any]:
     """The parts of a node about its properties: monitors, and readers of messages, with no name in `taken`."""
     readers, topics = topics_code(read_topics(compiled), taken)
     source = replace(specification.source, name=PurePath(specification.source.name).name)
@@ -49,7 +55,7 @@ def context(compiled: Sequence[Compiled], specification: Specification, taken: f
         "version": __version__,
         "overview": [line for c in compiled for line in overview(c)],
         "usage": template(__name__, "usage.txt.jinja").render(),
-        "plan": plan_code(compiled, specification, taken=taken, most_ids=MOST_IDS).rstrip("\n"),
+        "plan": plan_code(compiled, specification, taken=taken, most_ids=MOST_IDS, guards=guards).rstrip("\n"),
         "readers": readers,
         "topics_to_read": "\n".join(topics),
         "provenance": _literal(provenance([source])),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from functools import cached_property, partial
 from pathlib import Path
 from typing import Protocol
@@ -13,7 +14,7 @@ from ltlc.assurance.programs import Monitored, Program, programs
 from ltlc.assurance.reading.files import READABLE, written
 from ltlc.assurance.reading.outcomes import Difference, Written
 from ltlc.assurance.told_runs import told_runs
-from ltlc.backends import ament
+from ltlc.backends import ament, c
 from ltlc.backends.ament.folder import earlier
 from ltlc.backends.ament.metadata import Metadata
 from ltlc.backends.spelling import NotInTargetError
@@ -22,6 +23,7 @@ from ltlc.base.diagnostics import Diagnostic
 from ltlc.base.files import refuse_unwritable
 from ltlc.compiler import Compiled
 from ltlc.dataclass import dataclass
+from ltlc.program.guards import GuardProgram
 from ltlc.specification.specification import Specification
 
 _NODE = "ROS 2"
@@ -31,13 +33,16 @@ _NODE = "ROS 2"
 class Made:
     """The code of each property, as what can be run and as text, None where there is none; and what comes of it.
 
-    `files` makes the files, by their paths, once the code has been judged; `note` is to be said with them.
+    `files` makes the files, by their paths, once the code has been judged; `note` is to be said with them. Those
+    `beside` are of a guard, of which `flaw` finds what its code does otherwise than it should.
     """
 
     programs: Sequence[Program] | None
     written: Sequence[Written | Difference] | None
     files: Callable[[], Mapping[Path, str | bytes]]
     note: str = ""
+    beside: Sequence[Path] = ()
+    flaw: Callable[[], str | None] = lambda: None
 
 
 class UnfitError(Exception):
@@ -65,8 +70,14 @@ class Target(Protocol):
         """Raise OSError if the output cannot be written."""
         ...
 
-    def make(self, compiled: Sequence[Compiled], specification: Specification, messages: Messages) -> Made:
-        """The code. Raises UnfitError."""
+    def make(
+        self,
+        compiled: Sequence[Compiled],
+        specification: Specification,
+        messages: Messages,
+        guards: Sequence[GuardProgram] = (),
+    ) -> Made:
+        """The code, that of `guards` included if the target has guards. Raises UnfitError."""
         ...
 
 
@@ -102,7 +113,13 @@ class _Text:
     def refuse(self) -> None:
         refuse_unwritable(self.path)
 
-    def make(self, compiled: Sequence[Compiled], specification: Specification, messages: Messages) -> Made:
+    def make(
+        self,
+        compiled: Sequence[Compiled],
+        specification: Specification,
+        messages: Messages,
+        guards: Sequence[GuardProgram] = (),
+    ) -> Made:
         try:
             text = backends.emit(self.name, compiled, specification)
         except NotInTargetError:
@@ -135,21 +152,56 @@ class _C:
         for path in self.told:
             refuse_unwritable(path)
 
-    def make(self, compiled: Sequence[Compiled], specification: Specification, messages: Messages) -> Made:
+    def make(
+        self,
+        compiled: Sequence[Compiled],
+        specification: Specification,
+        messages: Messages,
+        guards: Sequence[GuardProgram] = (),
+    ) -> Made:
         from ltlc.assurance.c_programs import c_programs  # takes time, as what reads C does
         from ltlc.assurance.reading.c.files import written as written_in_c
-        from ltlc.backends import c
 
         try:
             files = c.emit(compiled, specification, self.path.stem)
         except NotInTargetError:
             raise UnfitError(_unfit("C", c.emit, specification, compiled)) from None
-        texts = (files.source, files.header, files.wrapper)
-        return Made(
+        texts = dict(zip(self.told, (files.source, files.header, files.wrapper), strict=True))
+        made = Made(
             c_programs(files, compiled, specification, messages),
             written_in_c(files.header, files.source, compiled, specification.rate, specification.timeout),
-            lambda: dict(zip(self.told, texts, strict=True)),
+            lambda: texts,
             f"worst case: {files.bound}",
+        )
+        return self._guarded(made, files, compiled, specification, messages, guards) if guards else made
+
+    def _guarded(
+        self,
+        made: Made,
+        files: c.Files,
+        compiled: Sequence[Compiled],
+        specification: Specification,
+        messages: Messages,
+        guards: Sequence[GuardProgram],
+    ) -> Made:
+        """With the files of a guard. Raises UnfitError."""
+        from ltlc.assurance.c_guard import flaw
+        from ltlc.backends.c.guards import emit
+
+        try:
+            guard = emit(files, guards)
+        except NotInTargetError as error:
+            message = f"the guard of `{specification.guards[0].out}` cannot be written in C: it has {error}"
+            span = specification.guards[0].span
+            help = "nothing was written; to emit the monitors alone, build the properties from a file without a guard"
+            raise UnfitError([diagnostic("LTL708", specification.source, span, message, help=help)]) from None
+        texts = {self.path.with_name(f"{guard.stem}{end}"): text for end, text in guard.texts.items()}
+        return replace(
+            made,
+            files=lambda: {**made.files(), **texts},
+            note=f"{made.note}; {guard.bound} a call of the guard",
+            beside=[*texts],
+            flaw=lambda: flaw(files, guard, guards[0], compiled, specification, messages),
         )
 
 
@@ -167,7 +219,13 @@ class _Rust:
     def refuse(self) -> None:
         refuse_unwritable(self.path)
 
-    def make(self, compiled: Sequence[Compiled], specification: Specification, messages: Messages) -> Made:
+    def make(
+        self,
+        compiled: Sequence[Compiled],
+        specification: Specification,
+        messages: Messages,
+        guards: Sequence[GuardProgram] = (),
+    ) -> Made:
         from ltlc.assurance.c_programs import rust_programs  # takes time, as what reads Rust does
         from ltlc.assurance.reading.rust import written as written_in_rust
         from ltlc.backends import rust
@@ -224,8 +282,14 @@ class _Package:
     def refuse(self) -> None:
         _ = self.metadata
 
-    def make(self, compiled: Sequence[Compiled], specification: Specification, messages: Messages) -> Made:
-        node = _Text("ros2", self.path).make(compiled, specification, messages)
+    def make(
+        self,
+        compiled: Sequence[Compiled],
+        specification: Specification,
+        messages: Messages,
+        guards: Sequence[GuardProgram] = (),
+    ) -> Made:
+        node = _Text("ros2", self.path).make(compiled, specification, messages, guards)
 
         def files() -> Mapping[Path, str]:
             monitored = [each for each in node.programs or () if isinstance(each, Monitored)]

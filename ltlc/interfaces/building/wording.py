@@ -13,6 +13,7 @@ from ltlc.base.codes import diagnostic
 from ltlc.base.diagnostics import Diagnostic
 from ltlc.base.limits import Exceeded
 from ltlc.compiler import Compiled
+from ltlc.program.guards import GuardProgram
 from ltlc.semantics.instants import Instant
 from ltlc.semantics.words import Letter
 from ltlc.specification.specification import Specification
@@ -94,6 +95,20 @@ def failures(specification: Specification, compiled: Compiled, judgement: Judgem
         message = f"the lowered machine of `{label}` does not match its monitor: {judgement.machine}"
         found.append(diagnostic("LTL710", specification.source, place, message, help=_OUR_FAULT))
     return found
+
+
+def guard_failure(specification: Specification, program: GuardProgram, wrong: Difference) -> Diagnostic:
+    """That the program of guards is not their region."""
+    guard = program.guards[0]
+    message = f"the lowered guard of {guard.out} does not match its region: {wrong}"
+    return diagnostic("LTL710", specification.source, guard.span, message, help=_OUR_FAULT)
+
+
+def guard_code_failure(specification: Specification, wrong: str) -> Diagnostic:
+    """That the code of a guard does something else than its program."""
+    guard = specification.guards[0]
+    message = f"the code of the guard of {guard.out} behaves incorrectly: {wrong}"
+    return diagnostic("LTL703", specification.source, guard.span, message, help=_OUR_FAULT)
 
 
 def _advice(refused: NotCertified) -> str:

@@ -97,7 +97,8 @@ def run(options: argparse.Namespace) -> int:
         print(built.made.note)
     with saying("making the files", options.quiet):
         files = built.made.files()
-    return _write({**certificates, **files}, () if options.quiet else [*certificates, *target.told])
+    told = [*certificates, *target.told, *built.made.beside]
+    return _write({**certificates, **files}, () if options.quiet else told)
 
 
 def _write(files: Mapping[Path, str | bytes], told: Sequence[Path]) -> int:

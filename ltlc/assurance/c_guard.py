@@ -1,0 +1,219 @@
+"""The emitted C of a guard beside the runtime's guard, on the same events: the same answers at the same times."""
+
+from __future__ import annotations
+
+import ctypes
+import random
+from collections.abc import Sequence
+
+from ltlc.assurance.c_library import Library, compiler
+from ltlc.assurance.library import Loaded, Monitors
+from ltlc.assurance.messages import Messages
+from ltlc.assurance.sources import read, without_news
+from ltlc.assurance.values import Samples
+from ltlc.backends.c import Files
+from ltlc.backends.c.guards import GuardFiles
+from ltlc.backends.python.load import load_plan
+from ltlc.compiler import Compiled
+from ltlc.dataclass import dataclass
+from ltlc.program.guards import GuardProgram
+from ltlc.runtime.guarding import Action, Deed, Guard, Message
+from ltlc.runtime.times import NEVER
+from ltlc.runtime.watching import Watching
+from ltlc.semantics.durations import UNITS, Nanoseconds
+from ltlc.specification.evaluation import Value
+from ltlc.specification.expressions import Field, Signal
+from ltlc.specification.fallbacks import value_in
+from ltlc.specification.guards import Fallback
+from ltlc.specification.specification import Specification, fields
+
+HOLD, PASS = 0, 1
+"""What a guard in C decides; a fallback is 2 + its number."""
+
+RUNS, EVENTS = 60, 40
+"""How many runs are compared, and how long they are."""
+
+
+class EmittedGuard(Monitors):
+    """A guard of a library in one run."""
+
+    def __init__(self, library: Loaded, guard: GuardFiles) -> None:
+        super().__init__(library)
+        functions = library.functions
+        self._topics = {topic: number for number, topic in enumerate(guard.others)}
+        functions.gate_guard_due.restype = ctypes.c_int64
+        functions.gate_guard_lost.restype = ctypes.c_bool
+        time = ctypes.c_int64
+        functions.gate_guard_command.argtypes = [ctypes.c_void_p, time, ctypes.c_void_p]
+        functions.gate_guard_hear.argtypes = [ctypes.c_void_p, time, ctypes.c_void_p, ctypes.c_int]
+        functions.gate_guard_act.argtypes = [ctypes.c_void_p, time]
+        self._run = ctypes.create_string_buffer(functions.gate_guard_size())
+        functions.gate_guard_init(self._run)
+
+    @property
+    def has_lost(self) -> bool:
+        """Whether it cannot keep its properties any more."""
+        return bool(self._functions.gate_guard_lost(self._run))
+
+    def command(self, time: Nanoseconds, out: str, sample: dict[Signal, Value]) -> int:
+        """A command has come."""
+        self._fill(sample, [out])
+        return int(self._functions.gate_guard_command(self._run, time, self._samples))
+
+    def hear(self, time: Nanoseconds, topic: str, sample: dict[Signal, Value]) -> int:
+        """A message has come on another topic."""
+        self._fill(sample, [topic])
+        return int(self._functions.gate_guard_hear(self._run, time, self._samples, self._topics[topic]))
+
+    def due(self) -> Nanoseconds:
+        """When to call `act`."""
+        return int(self._functions.gate_guard_due(self._run))
+
+    def act(self, time: Nanoseconds) -> int:
+        """It is `time` now."""
+        return int(self._functions.gate_guard_act(self._run, time))
+
+
+@dataclass(frozen=True, slots=True)
+class Event:
+    """A message on a topic, or with None time that passes up to `time`; `sample` are its values."""
+
+    time: Nanoseconds
+    topic: str | None
+    sample: dict[Signal, Value]
+
+    def __str__(self) -> str:
+        values = ", ".join(f"{signal.name} = {value}" for signal, value in self.sample.items())
+        return f"at {self.time} ns, {self.topic or 'nothing'}{f' with {values}' if values else ''}"
+
+
+class Beside:
+    """Both guards in one run; each call returns what the runtime's and the emitted one decided."""
+
+    def __init__(self, emitted: EmittedGuard, guard: Guard) -> None:
+        self.emitted, self.guard = emitted, guard
+        self._sent = [HOLD, PASS, *(message.name for message in guard.fallbacks)]
+
+    def take(self, event: Event) -> tuple[list[int], list[int]]:
+        """What is due before an event, and the event."""
+        right, found = self._due(event.time)
+        sample = {signal.name: value for signal, value in event.sample.items()}
+        (out,) = self.guard.outs
+        if event.topic == out:
+            right.append(self._decided(self.guard.command(event.time, out, sample)))
+            found.append(self.emitted.command(event.time, out, event.sample))
+        elif event.topic is not None:
+            right += map(self._decided, self.guard.hear(event.time, event.topic, sample))
+            found.append(self.emitted.hear(event.time, event.topic, event.sample))
+        return [*filter(None, right)], [*filter(None, found)]
+
+    def _due(self, time: Nanoseconds) -> tuple[list[int], list[int]]:
+        right: list[int] = []
+        found: list[int] = []
+        while (due := min(self.emitted.due(), self.guard.due() or NEVER)) <= time:
+            right += map(self._decided, self.guard.act(due))
+            while self.emitted.due() <= due:
+                found.append(self.emitted.act(due))
+        return right, found
+
+    def _decided(self, deed: Deed) -> int:
+        if deed.action in (Action.HELD, Action.LOST):
+            return HOLD
+        return PASS if deed.action is Action.PASSED else self._sent.index(deed.message or "")
+
+
+class Drawn:
+    """Events of a guard that are drawn: values of its properties, times where it is hardest."""
+
+    def __init__(self, program: GuardProgram, samples: Sequence[Samples]) -> None:
+        self.program, self._samples = program, samples
+        self.out = program.guards[0].out
+        self._first = program.spoken or (self.out,)
+        self._topics: dict[str, list[Signal]] = {}
+        for signal in (s for some in samples for s in some.sources.signals):
+            if isinstance(signal.definition, Field):
+                self._topics.setdefault(signal.definition.topic, []).append(signal)
+
+    def first(self, chance: random.Random) -> Event:
+        """The event with which a session begins: a message that is heard, or leaves."""
+        while (event := self.event(chance, UNITS["s"], NEVER)).topic not in self._first:
+            pass
+        return event
+
+    def event(self, chance: random.Random, now: Nanoseconds, due: Nanoseconds) -> Event:
+        """The next event, where something is due next."""
+        time = now + chance.choice([0, 0, 1, UNITS["ms"], 10 * UNITS["ms"], 100 * UNITS["ms"], UNITS["s"]])
+        if due < NEVER and chance.random() < 0.5:
+            time = max(now, due + chance.choice([-self.program.lead, 0, self.program.lead]) + chance.choice([-1, 0, 1]))
+        topic = chance.choice([None, self.out, *self._topics])
+        values: dict[Signal, Value] = {}
+        for some in self._samples:
+            values |= some.next(()).sample
+        own = {signal: values[signal] for signal in self._topics.get(topic or "", ()) if signal in values}
+        return Event(time, topic, own)
+
+
+def flaw(
+    files: Files,
+    guard: GuardFiles,
+    program: GuardProgram,
+    compiled: Sequence[Compiled],
+    specification: Specification,
+    messages: Messages,
+) -> str | None:
+    """What the text of a guard, or what it does, is otherwise than it should; None if nothing is found.
+
+    Without a C compiler, it is not run.
+    """
+    path = compiler()
+    if path is None:
+        return None
+    parts = [compiled[number].specification for number in program.parts]
+    drawn = Drawn(program, [Samples(without_news(each), read(each, messages)) for each in parts])
+    return deviation(Library(files, path, guard), guard, program, compiled, specification, drawn)
+
+
+def deviation(
+    library: Loaded,
+    guard: GuardFiles,
+    program: GuardProgram,
+    compiled: Sequence[Compiled],
+    specification: Specification,
+    drawn: Drawn,
+) -> str | None:
+    """What the emitted guard does otherwise than the runtime's; None if nothing is found."""
+    plan = load_plan(compiled, specification, guards=[program])
+    (own,), sent = plan.guards, fallbacks(program, compiled)
+    for seed in range(RUNS):
+        chance = random.Random(seed)
+        event = drawn.first(chance)
+        runtime = Guard(Watching(plan, own, event.time), own.outs, sent, own.lead)
+        both = Beside(EmittedGuard(library, guard), runtime)
+        for number in range(1, EVENTS + 1):
+            right, found = both.take(event)
+            if right != found or both.emitted.has_lost is not (runtime.lost is not None):
+                return f"{_shown(guard, found)} instead of {_shown(guard, right)} after {number} events, {event}"
+            event = drawn.event(chance, event.time, both.emitted.due())
+    return None
+
+
+def fallbacks(program: GuardProgram, compiled: Sequence[Compiled]) -> list[Message]:
+    """The fallbacks of guards as the runtime has them: samples of the signals that are read."""
+    inputs = (i for number in program.parts for i in compiled[number].specification.inputs())
+    read = dict.fromkeys(pair for i in inputs for pair in fields(i.signal))
+    return [
+        Message(fallback.name, guard.out, _values(fallback, [s for s, field in read if field.topic == guard.out]))
+        for guard in program.guards
+        for fallback in guard.fallbacks
+    ]
+
+
+def _values(fallback: Fallback, signals: Sequence[Signal]) -> dict[str, Value]:
+    found = ((signal.name, value_in(fallback, signal)) for signal in signals)
+    return {name: constant.value for name, constant in found if constant is not None}
+
+
+def _shown(guard: GuardFiles, decisions: Sequence[int]) -> str:
+    """Decisions in words."""
+    names = ["nothing", "the command", *(name.lower() for name in guard.sent)]
+    return " and ".join(f"`{names[each]}`" for each in decisions) or "nothing"
