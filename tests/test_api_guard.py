@@ -78,8 +78,8 @@ def recorded(folder: Path) -> Iterator[str]:
 
 
 def test_a_guard_that_is_stepped_when_it_is_due_sends_its_fallback() -> None:
+    assert ltlc.guard(NEAR).due is None
     run = ltlc.guard(NEAR)
-    assert run.due is None
     run.step({"scan": [2.0]}, time=0)
     run.step({"asked": 1.0}, time=0.5)
     run.step({"scan": [0.3]}, time=1)
@@ -118,17 +118,26 @@ def test_fields_of_fallbacks_are_given_by_their_paths() -> None:
         ({"scam": [1.0]}, "no guard reads `scam`; did you mean `scan`?"),
         ({"/cmd_vel_row/linear/x": 1.0}, "no guard reads `/cmd_vel_row/linear/x`"),
         ({"asked": "fast"}, '`asked`: `"fast"` is not a number'),
-        (3, "row 2 is 3; a row must be a mapping"),
-        ({"scan": [1.0], "time": -1}, "row 2"),
     ],
 )
 def test_a_row_that_cannot_be_used_is_refused_and_has_no_effect(row: Row, reason: str) -> None:
     run = ltlc.guard(NEAR)
     run.step({"scan": [2.0]}, time=0)
     with pytest.raises(ltlc.UnusableInput) as error:
-        run.step(row, time=None if isinstance(row, dict) and "time" in row else 1)
+        run.step(row, time=1)
     assert reason in str(error.value)
     assert [each.action for each in run.step({"asked": 1.0}, time=0)] == [Action.PASSED]
+
+
+def test_time_does_not_go_back_and_a_row_is_a_mapping() -> None:
+    run = ltlc.guard(NEAR)
+    run.step({"scan": [2.0], "time": 1})
+    with pytest.raises(ltlc.UnusableInput, match="row 2"):
+        run.step({"asked": 1.0}, time=0.5)
+    with pytest.raises(ltlc.UnusableInput, match="row 2 is 3; a row must be a mapping"):
+        run.step(3, time=2)  # type: ignore[arg-type]
+    with pytest.raises(ltlc.UnusableInput, match="row 2: there is no `time`"):
+        run.step({"asked": 1.0})
 
 
 def test_fields_that_no_property_reads_may_be_in_a_row() -> None:

@@ -166,9 +166,7 @@ class Row:
 
     def __str__(self) -> str:
         counts = " | ".join(f"{self.did[each]:,}" for each in DID)
-        return (
-            f"| `{self.name}` | {self.crash} | {self.broken} | {self.kept} | {self.unbroken} | {counts} |"
-        )
+        return f"| `{self.name}` | {self.crash} | {self.broken} | {self.kept} | {self.unbroken} | {counts} |"
 
     @property
     def is_good(self) -> bool:

@@ -11,7 +11,6 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
 import mujoco
-import numpy as np
 
 Message = tuple[str, Mapping[str, object]]
 Point = tuple[float, float]
@@ -102,7 +101,6 @@ def _xml(layout: Layout) -> str:
     return f"""
 <mujoco>
   <option timestep="{TICK / STEPS / 1000}" integrator="implicitfast"/>
-  <visual><global offwidth="960" offheight="400"/></visual>
   <worldbody>
     <light pos="2 -3 8" dir="0 0.3 -1"/>
     <geom name="floor" type="box" size="{(layout.floor + 30) / 2} 30 0.1" pos="{(layout.floor - 30) / 2} 0 -0.1"
@@ -297,12 +295,6 @@ class World:
     def battery(self) -> Message:
         """How full the battery is, 0 to 1."""
         return "/battery", {"percentage": self.charge}
-
-    def picture(self, camera: mujoco.MjvCamera) -> np.ndarray:
-        """What `camera` sees, as pixels."""
-        with mujoco.Renderer(self.model, 400, 960) as renderer:
-            renderer.update_scene(self.data, camera)
-            return renderer.render()
 
 
 def _number(values: Mapping[str, object], path: str) -> float:

@@ -134,9 +134,10 @@ def _run(options: argparse.Namespace) -> int:
     if options.guard:
         from ltlc.interfaces.commands.guarded import guarding
 
-        guards = guarding(prepared, options)
-        if isinstance(guards, int):
-            return guards
+        found_guards = guarding(prepared, options)
+        if isinstance(found_guards, int):
+            return found_guards
+        guards = found_guards
     keep_trails = bool(options.report or options.output)
     evidence = None
     if options.evidence:
