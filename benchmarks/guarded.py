@@ -23,7 +23,7 @@ from ltlc.base.source import Source
 from ltlc.compiler import compile_specification
 from ltlc.frontend.language import load_text
 from ltlc.inputs.recordings.lacks import signals_of
-from ltlc.interfaces.commands.guarded import solved
+from ltlc.interfaces.api.guard import solved
 from ltlc.monitoring.guarding.recording import GuardedRun, Guarding
 from ltlc.runtime.guarding import Action
 from ltlc.semantics.encodings import EPISODE

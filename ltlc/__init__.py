@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from ltlc.interfaces.api.check import Check, check
     from ltlc.interfaces.api.compare import compare
     from ltlc.interfaces.api.corpus import measure_corpus
+    from ltlc.interfaces.api.guard import LiveGuard, guard
     from ltlc.interfaces.api.monitor import LiveRun, monitor
     from ltlc.interfaces.api.results import Run
     from ltlc.interfaces.api.run import run, run_each
@@ -22,6 +23,7 @@ __all__ = [
     "Budget",
     "Build",
     "Check",
+    "LiveGuard",
     "LiveRun",
     "Run",
     "UnusableInput",
@@ -29,6 +31,7 @@ __all__ = [
     "build",
     "check",
     "compare",
+    "guard",
     "measure_corpus",
     "monitor",
     "run",
@@ -39,6 +42,7 @@ _MODULES = {
     "Budget": "ltlc.base.limits",
     "Build": "ltlc.interfaces.api.build",
     "Check": "ltlc.interfaces.api.check",
+    "LiveGuard": "ltlc.interfaces.api.guard",
     "LiveRun": "ltlc.interfaces.api.monitor",
     "Run": "ltlc.interfaces.api.results",
     "UnusableInput": "ltlc.base.errors",
@@ -46,6 +50,7 @@ _MODULES = {
     "build": "ltlc.interfaces.api.build",
     "check": "ltlc.interfaces.api.check",
     "compare": "ltlc.interfaces.api.compare",
+    "guard": "ltlc.interfaces.api.guard",
     "measure_corpus": "ltlc.interfaces.api.corpus",
     "monitor": "ltlc.interfaces.api.monitor",
     "run": "ltlc.interfaces.api.run",

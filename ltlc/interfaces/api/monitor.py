@@ -127,7 +127,7 @@ class LiveRun:
                 reader = self._reader_of(values)
             written: object = time
             if reader.has_time or time_ns is not None:
-                written = _written(values.get(TIME), time, time_ns)
+                written = written_time(values.get(TIME), time, time_ns)
             if (written is None) is not self._is_counted:
                 self._is_counted = self._is_by_number(written is None)
             number = self._rows + 1
@@ -191,11 +191,7 @@ class LiveRun:
 
     def _reader_of(self, row: Mapping[str, object]) -> _Reader:
         """What reads a row. Raises RecordingError, UnusableInput."""
-        if not isinstance(row, Mapping):
-            raise UnusableInput(
-                (), f"row {self._rows + 1} is {row!r:.100}; a row must be a mapping from signals to values"
-            )
-        keys = tuple(row)
+        keys = keys_of(row, self._rows + 1)
         self._reader = self._readers.get(keys) or self._meet(keys)
         return self._reader
 
@@ -251,7 +247,14 @@ def _family(signal: Signal) -> list[str]:
     return [signal.name, *(name for part in signal.inputs for name in _family(part.signal))]
 
 
-def _written(column: object, time: object, time_ns: Nanoseconds | None) -> object:
+def keys_of(row: object, number: int) -> tuple[str, ...]:
+    """The names of the values in a row. Raises UnusableInput."""
+    if not isinstance(row, Mapping):
+        raise UnusableInput((), f"row {number} is {row!r:.100}; a row must be a mapping from signals to values")
+    return tuple(row)
+
+
+def written_time(column: object, time: object, time_ns: Nanoseconds | None) -> object:
     """The time that was given, in seconds as they are written, or None. Raises UnusableInput for several."""
     if column is None and time_ns is None:
         return time

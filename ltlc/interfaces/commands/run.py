@@ -130,14 +130,14 @@ def _run(options: argparse.Namespace) -> int:
     prepared = compile_file(options, paths)
     if isinstance(prepared, int):
         return prepared
-    guarding = None
+    guards = None
     if options.guard:
-        from ltlc.interfaces.commands.guarded import guarding_of
+        from ltlc.interfaces.commands.guarded import guarding
 
-        found_guards = guarding_of(prepared, options)
+        found_guards = guarding(prepared, options)
         if isinstance(found_guards, int):
             return found_guards
-        guarding = found_guards
+        guards = found_guards
     keep_trails = bool(options.report or options.output)
     evidence = None
     if options.evidence:
@@ -156,7 +156,7 @@ def _run(options: argparse.Namespace) -> int:
         hashed=options.format != "text" or bool(options.results or options.output),
         evidence=evidence,
         cutting=cut,
-        guarding=guarding,
+        guarding=guards,
     )
     if found is not None:
         from ltlc.interfaces.commands.campaign import run_several

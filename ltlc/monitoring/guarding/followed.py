@@ -93,6 +93,8 @@ class Followed:
     def hear(self, time: int, topic: str, values: Values) -> None:
         """A message has come on a topic, or left on one."""
         self.hold(time)
+        if not any(topic in part.topics for part in self._of.arena.parts):
+            return
         fresh = self._take(time, topic, values)
         self._heard[topic] = time
         heard = _Heard(time, topic, fresh, self.joint.sent, self._sent_after(topic))

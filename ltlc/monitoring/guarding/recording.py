@@ -60,18 +60,23 @@ class Guarding:
 
         Raises RecordingError.
         """
-        outs = {guard.out: guard for guard in self.specification.guards}
-        sent = {name: signal for name, signal in signals.items() if _topic(signal) in outs}
-        asked = {name: _asked(outs[_topic(signal)], signal) for name, signal in sent.items()}
-        others = {name: signal for name, signal in signals.items() if name not in sent}
-        twins = {twin.name: twin for twin in asked.values()}
-        recording = open_(path, {**others, **twins}, reading)
-        if twins.keys().isdisjoint(recording.columns):
-            unguarded = open_(path, {**others, **sent}, reading)
-            if not sent.keys().isdisjoint(unguarded.columns):
-                own = {name: name for name in sent}
+        wanted, commands = self.wanted(signals)
+        recording = open_(path, wanted, reading)
+        if commands.keys().isdisjoint(recording.columns):
+            unguarded, own = open_(path, signals, reading), {name: name for name in commands.values()}
+            if not own.keys().isdisjoint(unguarded.columns):
                 return GuardedRecording(self, plan, unguarded, signals, own, is_unguarded=True)
-        return GuardedRecording(self, plan, recording, signals, {twin.name: name for name, twin in asked.items()})
+        return GuardedRecording(self, plan, recording, signals, commands)
+
+    def wanted(self, signals: Mapping[str, Signal]) -> tuple[dict[str, Signal], dict[str, str]]:
+        """`signals` with those of commands in the place of what is let through, and each with the name of that."""
+        outs = {guard.out: guard for guard in self.specification.guards}
+        asked = {
+            name: _asked(outs[_topic(signal)], signal) for name, signal in signals.items() if _topic(signal) in outs
+        }
+        others = {name: signal for name, signal in signals.items() if name not in asked}
+        twins = {twin.name: twin for twin in asked.values()}
+        return {**others, **twins}, {twin.name: name for name, twin in asked.items()}
 
 
 def _topic(signal: Signal) -> str:
@@ -230,8 +235,17 @@ class GuardedRun:
 
     def act(self, time: Nanoseconds) -> None:
         """Do all that is due up to and including `time`, in its order."""
-        while self._guards is not None and (due := self._guards.due()) is not None and due <= time:
-            self._guards.act(due)
+        while (due := self.due()) is not None and due <= time:
+            self._begun(due).act(due)
+
+    def act_live(self, time: Nanoseconds) -> None:
+        """Do the same at `time`, which is late for what was due before."""
+        if self._guards is not None:
+            self._guards.act(time)
+
+    def due(self) -> Nanoseconds | None:
+        """When one of them may act by itself next, if nothing comes before; None: never."""
+        return None if self._guards is None else self._guards.due()
 
     def _begun(self, time: Nanoseconds) -> Guards:
         """The guards; the session begins with the first message."""
