@@ -74,7 +74,8 @@ def build(
     message_paths: Sequence[str | PathLike[str]] = (),
     budget: Budget | None = None,
 ) -> Build:
-    """The output of `specification` for a target: `ros2`, `ament`, `python`, `c`, `rust`, `hoa`, `dot`, `json`, `tests`.
+    """The output of `specification` for a target: `ros2`, `ament`, `python`, `c`, `rust`, `hoa`, `dot`, `json` or
+    `tests`.
 
     >>> import ltlc
     >>> built = ltlc.build("slow: never robot.velocity > 2", "hoa")
