@@ -34,6 +34,7 @@ from ltlc.inputs.messages.definitions import PLACEHOLDER, MessageTypes
 from ltlc.interfaces.building.targets import Made, UnfitError
 from ltlc.monitoring.judging.output import mcap_of
 from ltlc.monitoring.judging.run import Judge
+from ltlc.program.guards import GuardProgram
 from ltlc.runtime.reports import topic_names
 from ltlc.runtime.times import seconds, seconds_text
 from ltlc.semantics.durations import Nanoseconds
@@ -79,8 +80,14 @@ class Tests:
             if any(self.path.iterdir()) and not (self.path / LIST).is_file():
                 raise OSError("the folder contains something other than tests made by ltlc")
 
-    def make(self, compiled: Sequence[Compiled], specification: Specification, messages: Messages) -> Made:
-        """The recordings, which are no code. Raises UnfitError for what is judged for each id."""
+    def make(
+        self,
+        compiled: Sequence[Compiled],
+        specification: Specification,
+        messages: Messages,
+        guards: Sequence[GuardProgram] = (),
+    ) -> Made:
+        """The recordings, which are no code; guards hold back nothing of them. Raises UnfitError for `each`."""
         if unfit := [each for each in compiled if each.specification.slicing is not None]:
             raise UnfitError([_for_each_id(specification, each) for each in unfit])
         settings = Settings(specification.rate, specification.timeout)
