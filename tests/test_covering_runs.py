@@ -115,6 +115,8 @@ def test_messages_of_all_kinds_of_fields_are_written(tmp_path: Path, capsys: pyt
         "byte b\nchar c\nfloat32 x\nuint8[] raw\nbyte[] bytes\nstring[] names\nPart[] parts\nPart part\n"
     )
     (tmp_path / "props.txt").write_text(
+        "decl scan /scan sensor_msgs/LaserScan.ranges\n"
+        "near: after_until min(scan) < -9, min(scan) > -8, never max(scan) > 7\n"
         "decl x /w own_msgs/Whole.x\ndecl raw /w own_msgs/Whole.raw\ndecl on /w own_msgs/Whole.parts[0].on\n"
         "decl ping /ping std_msgs/Empty\n"
         "p: always (x > 1 implies eventually max(raw) > 100)\nq: never on[1] and x < 0\nr: never new ping and x > 5\n"

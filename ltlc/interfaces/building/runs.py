@@ -194,7 +194,7 @@ def table(of: Run[Event]) -> str:
 def _cell(value: Value) -> str:
     match value:
         case tuple():
-            return f"[{', '.join(json.dumps(each) if isinstance(each, str) else _cell(each) for each in value)}]"
+            return json.dumps(value)
         case bool():
             return str(value).lower()
         case _:
