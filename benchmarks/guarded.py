@@ -11,10 +11,11 @@ import argparse
 import random
 import sys
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from time import perf_counter
+from typing import Any
 
 import ltlc
 from ltlc.automata import Budget
@@ -24,7 +25,10 @@ from ltlc.compiler import compile_specification
 from ltlc.frontend.language import load_text
 from ltlc.inputs.recordings.lacks import signals_of
 from ltlc.interfaces.api.guard import solved
-from ltlc.monitoring.guarding.recording import GuardedRun, Guarding
+from ltlc.monitoring.guarding.arrangement import Arrangement
+from ltlc.monitoring.guarding.followed import Followed
+from ltlc.monitoring.guarding.recording import Event, GuardedRun, Guarding
+from ltlc.monitoring.guarding.report import Done
 from ltlc.runtime.guarding import Action
 from ltlc.semantics.encodings import EPISODE
 from ltlc.specification.expressions import Field
@@ -112,6 +116,26 @@ EXAMPLES: dict[str, Example] = {
         "r: always (new speed and estop implies speed == 0)",
         SPEEDS | SCANS | _flags("estop"),
     ),
+    "slew rate from the start": Example(
+        CMD + "p: always abs(speed - @{speed, -1 else 0}) <= 0.25",
+        {"/cmd_vel": {"speed": [-0.5, -0.2, 0.0, 0.2, 0.4, 1.0]}},
+    ),
+    "lights out": Example(
+        "guard /lights_raw to /lights else dark\nmessage dark {}\ndecl lights /lights std_msgs/Float64MultiArray.data\n"
+        "decl night /night std_msgs/Bool.data\np: always (new lights and night implies all(lights <= 0.5))",
+        {"/lights": {"lights": [(), (0.25,), (1.0, 0.0)]}} | _flags("night"),
+    ),
+    "no faster than when it got hot": Example(
+        CMD + "decl hot /hot std_msgs/Bool.data\n"
+        "p: after_until hot, not hot, always (not new speed or speed <= @{speed, opening})",
+        SPEEDS | _flags("hot"),
+    ),
+    "no faster than when the stick fell silent": Example(
+        CMD + "decl joy /joy sensor_msgs/Joy.axes[0]\n"
+        "p: after_until age(joy) > 50 ms, new joy, always (not new speed or speed <= @{speed, opening})\n"
+        "q: after_until joy > 0, joy <= 0, within 100 ms, eventually speed < @{joy, opening}",
+        SPEEDS | {"/joy": {"joy": [0.0, 0.125, 1.0]}},
+    ),
     "two guards": Example(
         CMD + "guard /grip_raw to /grip else hold\nmessage hold {}\ndecl grip /grip std_msgs/Float64.data\n"
         "p: never (speed > 0.2 and grip < 0)\nq: always (speed > 0.2 implies eventually speed <= 0.2 within 1 s)",
@@ -143,31 +167,62 @@ class Driven:
 
     def run(self, chance: random.Random, events: int) -> Counter[str]:
         """One run of so many events; what the guards did, how often, and `violated` if a property is."""
+        run = self._begun()
+        self.judge.reset()
+        found: Counter[str] = Counter()
+        time = 0
+        for time, values in self.rows(chance, events):
+            run.row(time, values, ())
+            for event in run.taken:
+                self.judge.step(dict(event.values), time_ns=event.time)
+            run.taken.clear()
+        run.act(time)
+        self.judge.step({}, time_ns=time)
+        found.update(each.deed.action.value for each in run.done)
+        found["violated"] = sum(self.judge.verdicts[label] is ltlc.Verdict.VIOLATED for label in self.labels)
+        assert all(one.deed.time <= other.deed.time for one, other in pairwise(run.done))
+        return found
+
+    def held_back(self, chance: random.Random, events: int) -> Iterator[tuple[list[Event], Done]]:
+        """The commands of a run that violate nothing by themselves and do not pass, with what was heard before."""
+        run = self._begun()
+        heard: list[Event] = []
+        for time, values in self.rows(chance, events):
+            before = len(run.done)
+            run.row(time, values, ())
+            for done in run.done[before:]:
+                if done.play is not None and done.deed.command is not None:
+                    left = 1 if done.deed.action is Action.CHANGED else 0
+                    yield [*heard, *run.taken[: len(run.taken) - left]], done
+            heard += run.taken
+            run.taken.clear()
+
+    def _begun(self) -> GuardedRun:
         sent = {
             name: name
             for name, s in self.signals.items()
             if isinstance(s.definition, Field) and s.definition.topic in self.raws
         }
-        run = GuardedRun(self.guarding, self.signals, sent, self.plan)
-        self.judge.reset()
-        found: Counter[str] = Counter()
+        return GuardedRun(self.guarding, self.signals, sent, self.plan)
+
+    def followed(self, began: int) -> list[Followed]:
+        """Where the properties of each set of guards are in a session that begins."""
+        properties = {each.label: each for each in self.specification.properties}
+        return [Followed(Arrangement(some, properties, self.plan), began) for some in self.guarding.solved]
+
+    def topic_of(self, values: Mapping[str, object]) -> str:
+        """The topic of a message with these values."""
+        return next(topic for topic, of in self.example.values.items() if not values.keys().isdisjoint(of))
+
+    def rows(self, chance: random.Random, events: int) -> Iterator[tuple[int, dict[str, Any]]]:
+        """Messages with their times, one after another; at the beginning one on each topic but those of commands."""
         time = 1000 * MS
         topics = [*self.example.values]
         others = [topic for topic in topics if topic not in self.raws]
         for number in range(events):
             time += self._gap(chance)
             for topic in others if number == 0 else [chance.choice([*topics, *self.raws])]:
-                values = {name: chance.choice(of) for name, of in self.example.values[topic].items()}
-                run.row(time, values, ())
-            for event in run.taken:
-                self.judge.step(dict(event.values), time_ns=event.time)
-            run.taken.clear()
-        run.act(time)
-        self.judge.step({}, time_ns=time)
-        found.update(deed.action.value for deed in run.deeds)
-        found["violated"] = sum(self.judge.verdicts[label] is ltlc.Verdict.VIOLATED for label in self.labels)
-        assert all(one.time <= other.time for one, other in pairwise(run.deeds))
-        return found
+                yield time, {name: chance.choice(of) for name, of in self.example.values[topic].items()}
 
     def _gap(self, chance: random.Random) -> int:
         about = chance.choice(self.bounds) - chance.choice([0, 0, 10 * MS]) + chance.choice([-1, 0, 1, 2])

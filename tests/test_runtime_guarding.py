@@ -23,7 +23,7 @@ def guards(text: str) -> list[Guard]:
     properties = {each.label: each for each in driven.specification.properties}
     found = []
     for some in driven.guarding.solved:
-        arrangement = Arrangement(some.arena, some.region, some.conditions, properties, driven.plan)
+        arrangement = Arrangement(some, properties, driven.plan)
         own = [message for message in (STOP,) if message.out in some.arena.outs]
         found.append(Guard(Followed(arrangement, 0), some.arena.outs, own, driven.specification.lead))
     return found

@@ -48,8 +48,8 @@ ROOMS = {
     "test_ulog.py",
     "base/render": "test_render*.py",
     "rules": "test_rules.py",
-    "monitoring/guarding": "test_guarded_runs.py test_api_guard.py test_examples_guard.py",
-    "runtime": "test_runtime_*.py test_guarded_runs.py test_recordings*.py test_openings.py test_each*.py "
+    "monitoring/guarding": "test_guarded_*.py test_api_guard.py test_examples_guard.py",
+    "runtime": "test_runtime_*.py test_guarded_*.py test_recordings*.py test_openings.py test_each*.py "
     "test_explained.py",
     "semantics": "test_semantics_*.py test_diagrams.py test_runtime_episodes.py test_openings.py",
     "interfaces/serve": "test_serve.py test_serve_browser.py",

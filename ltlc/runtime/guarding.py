@@ -8,6 +8,7 @@ on forks. Standard library only.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from enum import Enum
 from typing import NamedTuple, Protocol
 
@@ -90,7 +91,8 @@ class Deed:
     """What a guard did at a `time`, in ns, on one of the topics `outs`, and why.
 
     A `command` is what was asked for, if something was; `message` the name of what was
-    sent instead of it, or by itself; `values` what left.
+    sent instead of it, or by itself; `values` what left. Had the command passed, or had
+    nothing been sent in answer, the properties would be where they are `otherwise`.
     """
 
     time: int
@@ -100,6 +102,7 @@ class Deed:
     message: str | None = None
     values: Values | None = None
     reason: str = ""
+    otherwise: Watched | None = None
 
 
 class _Plan(NamedTuple):
@@ -141,16 +144,21 @@ class Guard:
 
     def command(self, time: int, out: str, values: Values) -> Deed:
         """A command has come that asks to leave on the topic `out`."""
-        why = self._refusal()
-        if why is None and (why := self._objection(time, out, values)) is None:
+        otherwise = None
+        if (why := self._refusal()) is None:
+            otherwise = self.watched.fork()
+            otherwise.hear(time, out, values)
+            why = self._objection(otherwise)
+        if why is None:
             self._take(time, out, values)
             return Deed(time, Action.PASSED, (out,), values, None, values)
+        held = Deed(time, Action.HELD, (out,), values, None, None, why, otherwise)
         message = self._instead(time, out)
         if message is None:
-            return Deed(time, Action.HELD, (out,), values, reason=why or "")
+            return held
         self._take(time, out, message.values)
         sent = message.values
-        return Deed(time, Action.CHANGED, (out,), values, message.name, sent, why or "")
+        return replace(held, action=Action.CHANGED, message=message.name, values=sent)
 
     def due(self) -> int | None:
         """When to call `act`, if nothing comes before; None: never."""
@@ -231,14 +239,16 @@ class Guard:
             violated is None and (self.watched.is_blind or self.watched.rests)
         ):
             return []
+        otherwise = self.watched.fork()
         for message in () if self.watched.is_silent else self.fallbacks:
             if self._having_sent(self.watched, time, message) is not None:
                 if now - time > self.lead:
                     delay = span_text(now - time)
                     return [self._lose(now, f"it was late, {delay} {when}")]
-                return [self._send(time, message, when)]
+                return [replace(self._send(time, message, when), otherwise=otherwise)]
         if violated is None:
-            return [self._lose(time, "a violation can no longer be avoided")]
+            lost = self._lose(time, "a violation can no longer be avoided")
+            return [replace(lost, otherwise=otherwise)]
         label, is_assumed = violated
         what = "the assumption " if is_assumed else ""
         return [self._lose(time, f"{what}`{label}` is violated")]
@@ -260,10 +270,9 @@ class Guard:
             return "a topic has not spoken yet"
         return "a value is missing" if self.watched.is_blind else None
 
-    def _objection(self, time: int, out: str, values: Values) -> str | None:
-        """Why a command may not pass; None if it may."""
-        after = self.watched.fork()
-        after.hear(time, out, values)
+    @staticmethod
+    def _objection(after: Watched) -> str | None:
+        """Why a command may not pass after which all is there; None if it may."""
         if after.is_blind:
             return "it has no value"
         if after.violated is not None:

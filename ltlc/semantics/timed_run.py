@@ -133,11 +133,15 @@ class TimedRun:
         counted = [counter.due() for counter in self._counters if counter.of.name in self.letter]
         return found + [(None, due) for due in counted if due is not None]
 
-    def fork(self, trackers: tuple[Tracker, ...] | None = None) -> TimedRun:
-        """The same run so far, to go on by itself, with `trackers` whose bounds differ where they have not passed."""
+    def fork(self, trackers: tuple[Tracker, ...] | None = None, retake: Retake | None = None) -> TimedRun:
+        """The same run so far, to go on by itself, with `trackers` whose bounds differ where they have not passed.
+
+        From there on, `retake` decides what it did.
+        """
         other = object.__new__(TimedRun)
         vars(other).update(vars(self))  # a tenth of the time of `copy.copy`
         other.trackers, other.states, other._started = trackers or self.trackers, [*self.states], [*self._started]
+        other._retake = retake or self._retake
         return other
 
     def counts_from(self, k: int, bound: int) -> Nanoseconds | None:

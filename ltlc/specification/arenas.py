@@ -102,7 +102,8 @@ def _with_effects(
     names = list(atoms)
     for name in names:
         for (guard, fallback), effect in zip(sendings, effects, strict=True):
-            condition = condition_after(atoms[name].condition, guard.out, fallback)
+            is_loose = _has_openings(atoms[name])
+            condition = None if is_loose else condition_after(atoms[name].condition, guard.out, fallback)
             if condition is None or isinstance(condition, bool):
                 effect[name] = condition
                 continue

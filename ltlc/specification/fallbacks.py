@@ -85,7 +85,8 @@ def _after(read: Read, out: str, fallback: Fallback) -> Expression | None:
         case New():
             return Boolean(True)
         case Current(signal):
-            return value_in(fallback, signal)
+            constant = value_in(fallback, signal)
+            return _computed(signal, out, fallback) if constant is None else constant
         case Past(signal, 1):
             return Current(signal)
         case Past(signal, samples):
@@ -94,3 +95,15 @@ def _after(read: Read, out: str, fallback: Fallback) -> Expression | None:
             return None
         case _:
             assert_never(read)
+
+
+def _computed(signal: Signal, out: str, fallback: Fallback) -> Expression | None:
+    """A signal that is computed from others, as it is after a fallback that brings it a sample."""
+    if isinstance(signal.definition, Field) or signal.when is not None:
+        return None
+    after = {read: _after(read, out, fallback) for read in reads(signal.definition)}
+    known = {read: expression for read, expression in after.items() if expression is not None}
+    if len(known) < len(after):
+        return None
+    changed: Expression = with_reads(signal.definition, known.__getitem__)
+    return changed

@@ -36,8 +36,9 @@ class Fallback:
 class Guard:
     """`guard raw to out else fallbacks`: commands come on the topic `raw`, and what is let through leaves on `out`.
 
-    Messages on both are of the type `message`, a full name. Of the `fallbacks` the first that helps is sent. The
-    signals `asked` are those declared on `raw`; in a table they are the columns with the commands.
+    Messages on both are of the type `message`, a full name, which the text `definition` defines in the form `ros2msg`.
+    Of the `fallbacks` the first that helps is sent. The signals `asked` are those declared on `raw`; in a table they
+    are the columns with the commands.
     """
 
     raw: str
@@ -46,3 +47,4 @@ class Guard:
     fallbacks: tuple[Fallback, ...]
     span: Span = field(compare=False)
     asked: tuple[Signal, ...] = field(default=(), compare=False)
+    definition: str = field(default="", compare=False)

@@ -8,14 +8,17 @@ from functools import cache, cached_property
 
 from ltlc.analysis.atom_words import atom_text
 from ltlc.analysis.errors import NotDecidedError
-from ltlc.analysis.examples import Example, rows_of, shown
+from ltlc.analysis.examples import Example, Setting, rows_of, shown
 from ltlc.analysis.guards.controls import with_any_command
 from ltlc.analysis.guards.game import Game, Step
 from ltlc.analysis.guards.plays import Turn, letter_of, play
 from ltlc.analysis.guards.solution import Solution, TooManyPlacesError, solve
 from ltlc.analysis.subjects import Study, Subject
+from ltlc.analysis.thresholds import Values
 from ltlc.analysis.wording import listed
 from ltlc.dataclass import dataclass
+from ltlc.runtime.plays import Move
+from ltlc.runtime.sampling import Value
 from ltlc.semantics.arenas import Arena, Outcome, Part, Ticks
 from ltlc.semantics.diagrams import Diagram, Diagrams
 from ltlc.semantics.durations import duration_text
@@ -126,7 +129,7 @@ def in_words(guarded: Guarded, letters: Diagram) -> str:
     sort = _simplest(game.diagrams, letters)
     others = (game.diagrams.given({level: not holds}, letters) for level, holds in sort.items())
     is_all = all(other == game.diagrams.false for other in others)
-    words = [_condition(game.atoms[level], atoms, holds=answer) for level, answer in sort.items()]
+    words = [condition_text(game.atoms[level], atoms, holds=answer) for level, answer in sort.items()]
     return f"{'' if is_all else ', for example'} where {' and '.join(words) or 'anything holds'}"
 
 
@@ -144,7 +147,7 @@ def _simplest(diagrams: Diagrams, letters: Diagram) -> dict[int, bool]:
     return shortest(letters) or {}
 
 
-def _condition(name: str, atoms: Mapping[str, Atom], *, holds: bool) -> str:
+def condition_text(name: str, atoms: Mapping[str, Atom], *, holds: bool) -> str:
     """A condition in words; a count has its name."""
     return atom_text(atoms[name], holds) if name in atoms else f"`{name}` {'holds' if holds else 'does not hold'}"
 
@@ -155,38 +158,55 @@ def example(guarded: Guarded, first: Letter, turns: Sequence[Turn], caption: str
     conditions = conditions_held(guarded.guards, (subject.specification for subject in guarded.subjects))
     own = guarded.study.setting(*guarded.subjects)
     setting = replace(own, atoms=tuple({**{atom.name: atom for atom in own.atoms}, **conditions}.values()))
-    held = {atom.name for atom in setting.atoms}
-    word = [letter & held for letter in (first, *(turn.letter for turn in turns))]
-    found = rows_of(setting, tuple(word), None)
-    if found is None:
+    found = rows_of(setting, word_of(setting, first, turns), None)
+    rows = None if found is None else rows_along(setting, first, turns, found)
+    if rows is None:
         return None
-    rows = [found[0]]
-    for turn, letter, row in zip(turns, word[1:], found[1:], strict=True):
-        values = {v: now if turn.topic in topics_of(v.signal) else rows[-1][v] for v, now in row.items()}
-        if evaluation.letter(setting.atoms, values) != letter:
-            return None
-        rows.append(values)
     columns = [name for name in shown(setting, rows)[0] if not name.startswith("new ")]
     values_shown = tuple(tuple(row[name] for name in columns) for row in shown(setting, rows))
     return Example(caption, tuple(columns), values_shown, ("the command", *(_remark(arena, turn) for turn in turns)))
 
 
+def word_of(setting: Setting, first: Letter, turns: Sequence[Turn]) -> tuple[Letter, ...]:
+    """The letters along a play, those of the atoms that `setting` has."""
+    held = {atom.name for atom in setting.atoms}
+    return tuple(letter & held for letter in (first, *(turn.letter for turn in turns)))
+
+
+def rows_along(setting: Setting, first: Letter, turns: Sequence[Turn], rows: Sequence[Values]) -> list[Values] | None:
+    """`rows` along a play, where each message changes what is read on its topic; None if those are other letters."""
+    found: list[Values] = []
+    topics = (None, *(turn.topic for turn in turns))
+    for topic, letter, row in zip(topics, word_of(setting, first, turns), rows, strict=True):
+        values = {v: now if not found or topic in topics_of(v.signal) else found[-1][v] for v, now in row.items()}
+        if evaluation.letter(setting.atoms, values) != letter:
+            return None
+        found.append(values)
+    return found
+
+
+def move_of(arena: Arena, turn: Turn, values: Mapping[str, Value]) -> Move:
+    """What happens in a turn, in words, with some `values`."""
+    event = _time(arena.parts, turn.step.passing) if turn.topic is None else f"a message on {turn.topic}"
+    parts = zip(arena.parts, turn.step.joint.standings, strict=True)
+    violated = tuple(part.label for part, at in parts if at is Outcome.VIOLATED and not part.is_assumed)
+    is_tried = turn.step.passing or not violated
+    tried = (arena.fallbacks[number].name for number in turn.vain if is_tried)
+    return Move(event, values, violated, tuple(filter(None, tried)), is_deadline=bool(turn.step.passing))
+
+
 def _remark(arena: Arena, turn: Turn) -> str:
-    violated = [
-        f"`{part.label}`"
-        for part, at in zip(arena.parts, turn.step.joint.standings, strict=True)
-        if at is Outcome.VIOLATED and not part.is_assumed
-    ]
-    what = _time(arena.parts, turn.step.passing) if turn.topic is None else f"a message on {turn.topic}"
-    tried = [f"`{name}`" for number in turn.vain if (name := arena.fallbacks[number].name)]
-    names = listed(tried, "or") if tried else ""
-    said = [f"{what}: {listed(violated)} {'is' if len(violated) == 1 else 'are'} violated" if violated else what]
-    if names and (turn.step.passing or not violated):
-        said.append(f"{names}{' before that' if turn.step.passing else ''} would not help")
-    return "; ".join(said)
+    move = move_of(arena, turn, {})
+    violated = [f"`{label}`" for label in move.violated]
+    is_violated = f": {listed(violated)} {'is' if len(violated) == 1 else 'are'} violated" if violated else ""
+    return "; ".join([f"{move.event}{is_violated}", *move.vain()])
 
 
 def _time(parts: Sequence[Part], passing: Ticks) -> str:
     """That some clocks pass a bound."""
     bounds = {parts[part].time.trackers[tracker].bounds[-1] for part, tracker in passing}
-    return f"more than {listed([duration_text(bound) for bound in sorted(bounds)])} later" if bounds else "later"
+    return (
+        f"more than {listed([duration_text(bound) for bound in sorted(bounds)])} later"
+        if bounds
+        else "an instant later"
+    )

@@ -17,6 +17,7 @@ from ltlc.frontend.language.values import Scalar, Text, Truth, expressions
 from ltlc.frontend.syntax import tree as syntax
 from ltlc.frontend.syntax.lexer import skip_blank
 from ltlc.inputs.messages.definitions import FieldType
+from ltlc.inputs.messages.texts import text_of
 from ltlc.specification.expressions import Boolean, Current, Field, Number, PathStep, Signal, String
 from ltlc.specification.guards import Constant, Fallback, FieldPath, Guard
 from ltlc.specification.specification import PropertySpecification, topics
@@ -115,7 +116,8 @@ def _guard(
         return None
     signals = (signal for name in checker.names.declarations for signal in _signals(checker, name))
     asked = tuple(s for s in signals if isinstance(s.definition, Field) and s.definition.topic == raw)
-    return Guard(raw, out, type_, tuple(each for each in fallbacks if each is not None), command.span, asked)
+    found = tuple(each for each in fallbacks if each is not None)
+    return Guard(raw, out, type_, found, command.span, asked, text_of(type_, checker.types.messages))
 
 
 def _type(checker: Checker, command: syntax.Guard, raw: str, out: str) -> str | None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from ltlc.base.codes import diagnostic
@@ -14,6 +15,8 @@ from ltlc.inputs.recordings.reading import ReadOptions
 from ltlc.specification.arrivals import waited_for
 from ltlc.specification.expressions import Field, Signal
 from ltlc.specification.specification import PropertySpecification, Specification, fields
+
+GUARDED = "`--guard` judges what the guards of the file would have let through of recorded commands"
 
 
 def signals_of(properties: Iterable[PropertySpecification]) -> dict[str, Signal]:
@@ -42,21 +45,35 @@ def lacks(specification: Specification | None, path: Path, reading: ReadOptions)
 
 
 def remarks(
-    properties: Sequence[PropertySpecification], specification: Specification, path: Path, recording: Recording
+    properties: Sequence[PropertySpecification],
+    specification: Specification,
+    path: Path,
+    recording: Recording,
+    *,
+    is_guarded: bool = False,
 ) -> Iterator[Diagnostic]:
-    """Columns of the recording at `path` that none of `properties` reads, and signals that nothing in it gives."""
+    """Columns of the recording at `path` that none of `properties` reads, and signals that nothing in it gives.
+
+    Unless it `is_guarded`, those that guards send are found by guards only.
+    """
     columns, signals = set(recording.columns), signals_of(properties)
+    asked = {} if is_guarded else {each.out: each for each in specification.guards}
     used = {name for each in properties for signal in each.signals() for name in _used(signal, columns)}
     for name in recording.columns:
         if name not in used:
             reason = ": the signal it is a part of has a column of its own" if name in signals else ""
             message = f"no property reads the column `{name}`{reason}"
-            help = "" if reason else did_you_mean(name, signals)
+            is_asked = any(name == signal.name for guard in asked.values() for signal in guard.asked)
+            help = GUARDED if is_asked else "" if reason else did_you_mean(name, signals)
             yield diagnostic("LTL805", Source(str(path), ""), None, message, help=help)
     for each in properties:
         missing = _missing(each, columns)
         # Of a topic that is missing, the same is said of every signal.
-        yield from dict.fromkeys(_missing_column(each, specification, n, signals[n], recording) for n in missing)
+        found = (_missing_column(each, specification, n, signals[n], recording) for n in missing)
+        sent = [any(of.topic in asked for _, of in fields(signals[n])) for n in missing]
+        yield from dict.fromkeys(
+            replace(told, help=GUARDED) if is_sent else told for told, is_sent in zip(found, sent, strict=True)
+        )
 
 
 def _missing(specification: PropertySpecification, columns: set[str]) -> list[str]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import field
 from enum import Enum
 
 from ltlc.dataclass import dataclass
@@ -39,7 +40,8 @@ def limit(text: str) -> Limit:
 class ReadOptions:
     """Of bags: the clock, and folders with definitions of messages that neither the bag nor ROS 2 Jazzy has.
 
-    A reader may omit rows before `since` and after `until`. Messages about it give `times` as these say.
+    A reader may omit rows before `since` and after `until`. Messages about it give `times` as these say. Blocks of bags
+    have the messages on `kept` topics as samples, each by `kept_name`.
     """
 
     stamp: Stamp = Stamp.LOG
@@ -47,6 +49,7 @@ class ReadOptions:
     since: Limit = None
     until: Limit = None
     times: Times = Times.OFFSET
+    kept: frozenset[str] = field(default=frozenset(), repr=False)
 
     def limits(self, beginning: Nanoseconds | None) -> tuple[Nanoseconds | None, Nanoseconds | None]:
         """`since` and `until` of a recording that begins then, as times of its clock; None also where unknown."""
@@ -57,6 +60,11 @@ def _limit(limit: Limit, beginning: Nanoseconds | None) -> Nanoseconds | None:
     if isinstance(limit, Offset):
         return None if beginning is None else beginning + limit.time
     return limit
+
+
+def kept_name(topic: str) -> str:
+    """The name by which the messages on `topic` are samples, in CDR."""
+    return f"messages on {topic}"
 
 
 DEFAULT = ReadOptions()

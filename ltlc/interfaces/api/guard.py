@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from os import PathLike
 from pathlib import Path
 
+from ltlc.analysis.guards.reasons import Reasons
 from ltlc.analysis.guards.solution import TooManyPlacesError, solve
 from ltlc.base.errors import UnusableInput
 from ltlc.base.limits import Budget
@@ -18,15 +20,14 @@ from ltlc.inputs.recordings.signals import FromTable
 from ltlc.interfaces.api.monitor import keys_of, written_time
 from ltlc.interfaces.api.prepare import Prepared, Text, encoding_of, prepare, read
 from ltlc.interfaces.api.times import Seconds
-from ltlc.monitoring.guarding.recording import GuardedRun, Guarding, Solved
+from ltlc.monitoring.guarding.arrangement import Solved
+from ltlc.monitoring.guarding.recording import GuardedRun, Guarding
 from ltlc.monitoring.judging.run import Judge, readings
 from ltlc.runtime.guarding import Deed
 from ltlc.runtime.sampling import Value
 from ltlc.semantics.durations import Nanoseconds
-from ltlc.specification.arenas import Property, arena_of, conditions_held, is_in_game, together
-from ltlc.specification.expressions import Field
-from ltlc.specification.guards import Guard
-from ltlc.specification.specification import PropertySpecification, Specification, topics_of
+from ltlc.specification.arenas import Property, arena_of, conditions_held, together
+from ltlc.specification.specification import Specification, topics_of
 
 NAME = Path("guard")
 """What is called a guarded run that is in no file."""
@@ -121,8 +122,8 @@ class LiveGuard:
     def _row(self, time: Nanoseconds, taken: Mapping[str, Value]) -> list[Deed]:
         self._run.act_live(time)
         self._run.row(time, taken, ())
-        deeds = [*self._run.deeds]
-        self._run.deeds.clear()
+        deeds = [replace(each.deed, reason=each.reason()) for each in self._run.done]
+        self._run.done.clear()
         self._run.taken.clear()
         return deeds
 
@@ -139,15 +140,13 @@ class LiveGuard:
         return self._tables[keys]
 
 
-def guarding_of(prepared: Prepared) -> Guarding:
-    """The guards of what was `prepared`, solved. Raises UnusableInput where they cannot be followed."""
+def guarding_of(prepared: Prepared, *, keeps_messages: bool = False) -> Guarding:
+    """The guards of what was `prepared`, solved; as `Guarding`. Raises UnusableInput."""
     specification = prepared.specification
     if not specification.guards:
         raise UnusableInput((), f"{specification.source.name} has no guard")
-    if reason := _not_followed(specification):
-        raise UnusableInput((), reason)
     try:
-        return Guarding(specification, solved(specification, prepared.compiled))
+        return Guarding(specification, solved(specification, prepared.compiled), keeps_messages)
     except TooManyPlacesError as error:
         raise UnusableInput((), f"the game of the guards {error}") from None
 
@@ -159,23 +158,6 @@ def solved(specification: Specification, compiled: Sequence[Compiled]) -> list[S
     for guards in together(specification.guards, specification.properties):
         arena = arena_of(guards, properties)
         conditions = conditions_held(guards, specification.properties)
-        found.append(Solved(guards, arena, solve(arena).region(), conditions))
+        solution = solve(arena)
+        found.append(Solved(guards, arena, solution.region(), conditions, Reasons(solution, conditions)))
     return found
-
-
-def _not_followed(specification: Specification) -> str | None:
-    """What keeps the guards from being followed, if something does."""
-    for each in specification.properties:
-        if is_in_game(each, specification.guards) and each.openings():
-            return f"`{each.label}` reads a value at an opening, which is not followed yet"
-        for guard in specification.guards:
-            if guard.fallbacks and (name := _array_of(guard, each)):
-                return f"`{each.label}` reads the array `{name}`, and it is not known what a fallback has there"
-    return None
-
-
-def _array_of(guard: Guard, of: PropertySpecification) -> str | None:
-    """An array of what `guard` sends that a property reads."""
-    arrays = (signal for signal in of.signals() if signal.type.element is not None)
-    sent = (s.name for s in arrays if isinstance(s.definition, Field) and s.definition.topic == guard.out)
-    return next(sent, None)

@@ -11,15 +11,15 @@ from ltlc.interfaces.commands.common import unusable
 from ltlc.interfaces.commands.progress import saying
 from ltlc.monitoring.guarding.recording import Guarding
 
-WITHOUT = ("evidence", "cut", "results", "summary", "engine")
-"""The options that are about a recording as it is, or about many."""
+WITHOUT = ("evidence", "cut", "engine")
+"""The options that are about a recording as it is, or about other machines."""
 
 
 def guarding(prepared: Prepared, options: argparse.Namespace) -> Guarding | int:
     """The guards of what was `prepared`, or the exit code."""
     try:
         with saying("solving the guards", options.quiet):
-            return guarding_of(prepared)
+            return guarding_of(prepared, keeps_messages=bool(options.output))
     except UnusableInput as error:
         return unusable(f"--guard: {error}")
 

@@ -91,12 +91,9 @@ def run(options: argparse.Namespace) -> int:
         return unusable("--before and --after need --cut")
     if options.guard:
         from ltlc.interfaces.commands.guarded import refused_beside
-        from ltlc.monitoring.campaigns.places import is_one
 
         if other := refused_beside(options):
             return unusable(f"--guard cannot be combined with {other}")
-        if not is_one(options.recordings):
-            return unusable("--guard is tried on one recording at a time")
     if options.watch:
         outputs = (options.report, options.output, options.summary, options.results, options.evidence, options.cut)
         read = [options.specification, *options.recordings, *options.msg_path]

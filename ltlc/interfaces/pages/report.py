@@ -93,7 +93,9 @@ class PageReport:
         remarks = [_remark(each) for each in report.diagnostics]
         if session is not None and session.began is not None and session.time is not None:
             shown = self._judged(_Run(id_, report, session, session.began, session.time, collected))
-            guarded = [] if report.guard is None else report.guard.text(session, with_all=False).splitlines()
+            guarded = (
+                [] if report.guard is None else report.guard.text(session, with_all=False, whole=True).splitlines()
+            )
             said = [*reports.unseen(session), *(printable(line.strip()) for line in guarded)]
             remarks += [{"severity": "note", "code": "", "message": s, "help": ""} for s in said]
         self._recordings.append({"id": id_, "name": printable(report.recording), "remarks": remarks, **shown})

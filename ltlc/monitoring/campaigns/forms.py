@@ -9,6 +9,7 @@ from ltlc.base.render.table import aligned
 from ltlc.monitoring.campaigns.outcomes import Outcome, PropertyOutcome
 from ltlc.monitoring.campaigns.places import Found
 from ltlc.monitoring.campaigns.tally import Result, Tally, brief
+from ltlc.monitoring.guarding.report import sentence
 from ltlc.monitoring.judging.run import unread_case, warnings
 from ltlc.runtime import junit, reports
 from ltlc.semantics.durations import Nanoseconds
@@ -27,7 +28,7 @@ class Form(Protocol):
 
 
 class Text:
-    """A line for each recording, errors as that of one recording has them, then a table and a line for all."""
+    """A line for each recording, and each guard; errors as that of one recording has them; a table, lines for all."""
 
     def __init__(self) -> None:
         self._has_blank_line = False
@@ -36,7 +37,8 @@ class Text:
         """The recording's line and errors."""
         errors = [_placed(each.figure, outcome.place.name) for each in outcome.properties if each.figure]
         self._has_blank_line = bool(errors)
-        return "\n".join([brief(outcome), *errors]) + "\n"
+        guards = [f"  {sentence(out, counts)}" for out, counts in outcome.guards.items()]
+        return "\n".join([brief(outcome), *guards, *errors]) + "\n"
 
     def end(self, tally: Tally, found: Found) -> str:
         """How often each property came out how, and a line for all recordings."""
@@ -46,7 +48,8 @@ class Text:
             for each in tally.properties.values()
         ]
         table = aligned([head, *rows], right=range(1, len(head))) if rows else []
-        lines = [*([] if self._has_blank_line else [""]), *table, "", "; ".join([tally.sentence(), *remarks(found)])]
+        said = ["; ".join([tally.sentence(), *remarks(found)]), *tally.guard_sentences()]
+        lines = [*([] if self._has_blank_line else [""]), *table, "", *said]
         return "".join(f"{line}\n" for line in lines)
 
 

@@ -14,6 +14,7 @@ from ltlc.dataclass import dataclass
 from ltlc.monitoring.campaigns.places import Location
 from ltlc.monitoring.judging.run import RunReport
 from ltlc.runtime import reports
+from ltlc.runtime.guarding import Action
 from ltlc.semantics.verdicts import Verdict
 
 
@@ -79,10 +80,18 @@ class Outcome:
         return str((self.report.get("cut") or {}).get("error") or "")
 
     @property
+    def guards(self) -> Mapping[str, Mapping[Action, int]]:
+        """How often each guard did what, by the topic on which it sends; none if it was not asked for."""
+        guards = self.report.get("guard", ())
+        return {each["out"]: {action: len(each[action.value]) for action in Action} for each in guards}
+
+    @property
     def exit_code(self) -> int:
         """That of `ltlc run` on this recording alone."""
         if self.error is not None or self.not_cut:
             return 2
+        if any(counts[Action.LOST] for counts in self.guards.values()):
+            return 1
         left_out = any("each" in each.report and each.report["each"]["left_out"] for each in self.properties)
         return reports.exit_code([each.verdict for each in self.properties], left_out)
 

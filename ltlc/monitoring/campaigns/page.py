@@ -36,7 +36,7 @@ def summary_page(specification: str, tally: Tally, found: Found, english: Mappin
         link=lambda name: _link(name, folder),
         specification=specification,
         version=__version__,
-        summary="; ".join([tally.sentence(), *remarks(found)]),
+        summary="; ".join([tally.sentence(), *remarks(found), *tally.guard_sentences()]),
         kinds=[kind.value for kind in Result],
         rows=[_row(each) for each in properties],
         failing=[_failures(each) for each in properties if each.failing],

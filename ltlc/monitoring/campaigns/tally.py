@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import field
 from enum import Enum
 
 from ltlc.dataclass import dataclass
 from ltlc.monitoring.campaigns.outcomes import Outcome, PropertyOutcome
+from ltlc.monitoring.guarding.report import sentence
 from ltlc.runtime import reports
+from ltlc.runtime.guarding import Action
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.verdicts import Verdict
 
@@ -81,6 +84,7 @@ class Tally:
     kept: int = 0
     again: int = 0
     extracts: int = 0
+    guards: dict[str, Counter[Action]] = field(default_factory=dict)
 
     def add(self, outcome: Outcome, is_kept: bool = False) -> None:
         """Count a recording; one that `is_kept` was judged by an earlier campaign."""
@@ -89,6 +93,8 @@ class Tally:
         self.again += outcome.tries > 1
         self.extracts += len(outcome.extracts)
         self.codes[outcome.exit_code] += 1
+        for out, counts in outcome.guards.items():
+            self.guards.setdefault(out, Counter()).update(counts)
         if outcome.error is not None:
             self.errors.append((outcome.place.name, str(outcome.error["message"])))
         for found in outcome.properties:
@@ -110,6 +116,7 @@ class Tally:
 
     def document(self) -> dict[str, object]:
         """The tally as an object of JSON."""
+        guards = [{"out": out, **{a.value: counts[a] for a in Action}} for out, counts in self.guards.items()]
         return {
             "recordings": self.recordings,
             "violated": self.codes[1],
@@ -122,12 +129,20 @@ class Tally:
                 {"label": each.label} | {kind.name.lower(): n for kind, n in each.counts.items()}
                 for each in self.properties.values()
             ],
+            **({"guard": guards} if guards else {}),
         }
+
+    def guard_sentences(self) -> list[str]:
+        """What the guards did in all recordings, a line for each."""
+        return [
+            sentence(out, counts, f"it lost {reports.counted(counts[Action.LOST], 'time')}")
+            for out, counts in self.guards.items()
+        ]
 
     def sentence(self) -> str:
         """The tally in one line."""
         told = {
-            "with a violation": self.codes[1],
+            f"with a violation{' or a guard that lost' if self.guards else ''}": self.codes[1],
             "with something still open or not started": self.codes[3],
             "in which all properties hold": self.codes[0],
             "not judged to the end": self.codes[2],

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cached_property
 
 from ltlc.dataclass import dataclass
 from ltlc.runtime import sampling
+from ltlc.runtime.plays import Play
 from ltlc.runtime.sampling import Input, Sampler, Value, Wanted, Window
 from ltlc.runtime.session import Plan
 from ltlc.semantics import finite
@@ -14,28 +15,44 @@ from ltlc.semantics.arenas import Arena, Joint, Part, Place, Region
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.ordered_machine import OrderedMachine, Timed, is_inside
 from ltlc.semantics.reset_machine import Clocks, ResetMachine
+from ltlc.semantics.timed_atoms import Clock
 from ltlc.semantics.words import Letter, letters_over
 from ltlc.specification.arrivals import waited_for
 from ltlc.specification.atoms import Atom
-from ltlc.specification.evaluation import truth
+from ltlc.specification.evaluation import is_nan, truth
 from ltlc.specification.expressions import Current, New, Opening, Past, Read, Recent, Slope, operands, reads
+from ltlc.specification.guards import Guard
 from ltlc.specification.specification import PropertySpecification, topics_of
+
+NOTHING: Mapping[Read, Value] = {}
 
 
 @dataclass(frozen=True)
 class Asked:
-    """A condition, what it reads, and where the values of that stand."""
+    """A condition, what it reads, and where the values of that stand; of a value at an opening the current one."""
 
     atom: Atom
     window: Window
     wanted: tuple[Read, ...]
 
-    def answer(self, known: list[Value]) -> bool | Nan | None:
-        """Whether it holds; None if a value has not come, NAN if it is not a number."""
-        values = self.window.values(known)
-        if any(value is None for value in values):
+    @property
+    def is_at_opening(self) -> bool:
+        """Whether it reads a value at an opening."""
+        return any(isinstance(read, Opening) for read in self.wanted)
+
+    def values(self, known: list[Value]) -> dict[Read, Value]:
+        """The values of what it reads."""
+        pairs = zip(self.wanted, self.window.values(known), strict=True)
+        return {read: _before_any(read) if value is None else value for read, value in pairs}
+
+    def answer(self, known: list[Value], kept: Mapping[Read, Value] = NOTHING) -> bool | Nan | None:
+        """Whether it holds, with the values that were `kept`; None if one has not come, NAN if it is not a number."""
+        values = self.values(known)
+        if None in values.values():
             return None
-        found = truth(self.atom.condition, dict(zip(self.wanted, values, strict=True)))
+        if kept and any(map(is_nan, values.values())):
+            return NAN
+        found = truth(self.atom.condition, {**values, **kept} if kept else values)
         return NAN if found is None else found
 
 
@@ -48,31 +65,46 @@ NAN = Nan()
 
 @dataclass(frozen=True)
 class PartPlan:
-    """What a part reads: the conditions that are its atoms, what makes a step of it, what it waits for."""
+    """What a part reads: the conditions that are its atoms, what makes a step of it, what it waits for.
+
+    Of the values at openings that it reads, `openings` has the clocks of the scopes, and `at_openings` the conditions.
+    """
 
     part: Part
     atoms: frozenset[str]
     window: Window
     waits: Window
+    openings: Mapping[Opening, Clock]
+    at_openings: Mapping[str, Asked]
 
     def begins_with(self, known: list[Value]) -> bool:
         """Whether all that it waits for has a value."""
         return all(value is not None for value in self.waits.values(known))
 
 
-class Arrangement:
-    """What does not change along a run: an arena with its region, and where the samples of a plan stand."""
+FindPlay = Callable[[Joint, Letter, frozenset[str], Mapping[Read, Value]], Play | None]
+"""The play that guards avoid which do not rest at a joint place, where some atoms hold, some are unknown, and what is
+read has these values."""
 
-    def __init__(
-        self,
-        arena: Arena,
-        region: Region,
-        conditions: Mapping[str, Atom],
-        properties: Mapping[str, PropertySpecification],
-        plan: Plan,
-    ) -> None:
-        """`conditions` are the atoms of values in the arena, `properties` its parts by their labels."""
-        self.arena, self.region = arena, region
+
+@dataclass(frozen=True)
+class Solved:
+    """Guards that share properties: what they were solved on, where they may rest, and their conditions."""
+
+    guards: tuple[Guard, ...]
+    arena: Arena
+    region: Region
+    conditions: Mapping[str, Atom]
+    find_play: FindPlay
+
+
+class Arrangement:
+    """What does not change along a run: what was `solved`, and where the samples of a plan stand."""
+
+    def __init__(self, solved: Solved, properties: Mapping[str, PropertySpecification], plan: Plan) -> None:
+        """`properties` are the parts of the arena by their labels."""
+        self.arena, self.region, self.find_play = solved.arena, solved.region, solved.find_play
+        arena, conditions = solved.arena, solved.conditions
         self._clocks: dict[tuple[int, Clocks | Timed, Letter], Clocks | Timed] = {}
         self._resting: dict[tuple[Joint, Letter, frozenset[str]], bool] = {}
         of_parts = [properties[part.label] for part in arena.parts]
@@ -102,15 +134,14 @@ class Arrangement:
             values,
             window(map(wanted_of, of.inputs())),
             window(map(wanted_of, waited_for(of))),
+            of.openings(),
+            {name: self.asked[name] for name in values if self.asked[name].is_at_opening},
         )
 
     @cached_property
-    def _places(self) -> dict[Joint, list[Joint]]:
-        """The joint places where guards may rest, by what they are without the order of clocks."""
-        found: dict[Joint, list[Joint]] = {}
-        for joint in self.region.rests:
-            found.setdefault(_without_order(joint), []).append(joint)
-        return found
+    def _places(self) -> Places:
+        """The joint places where guards may rest."""
+        return Places(self.region.rests)
 
     @cached_property
     def machines(self) -> list[ResetMachine | OrderedMachine]:
@@ -138,13 +169,26 @@ class Arrangement:
         """Whether guards may rest at `joint`, where atoms hold as in `letter`, whatever the `unknown` ones are."""
         key = (joint, letter, unknown)
         if key not in self._resting:
-            around = (other for other in self._places.get(_without_order(joint), ()) if _is_inside(joint, other))
+            around = self._places.around(joint)
             self._resting[key] = any(self._holds_in_all(self.region.rests[o], letter, unknown) for o in around)
         return self._resting[key]
 
     def _holds_in_all(self, formula: Formula, letter: Letter, unknown: frozenset[str]) -> bool:
         whole = (letter | some for some in letters_over(sorted(unknown)))
         return all(finite.holds(formula, (each,)) for each in whole if self.arena.alphabet.allows(each))
+
+
+class Places:
+    """Joint places, to be found by what clocks can read there."""
+
+    def __init__(self, joints: Iterable[Joint]) -> None:
+        self._found: dict[Joint, list[Joint]] = {}
+        for joint in joints:
+            self._found.setdefault(_without_order(joint), []).append(joint)
+
+    def around(self, joint: Joint) -> Iterator[Joint]:
+        """Those that are `joint`, but for the order of clocks, and have all that they can read at it."""
+        return (other for other in self._found.get(_without_order(joint), ()) if _is_inside(joint, other))
 
 
 def _without_order(joint: Joint) -> Joint:
@@ -159,8 +203,16 @@ def _is_inside(joint: Joint, other: Joint) -> bool:
     return all(is_inside(a.zone, b.zone) for a, b in clocks if isinstance(a, Timed) and isinstance(b, Timed))
 
 
+def _before_any(read: Read) -> Value:
+    """What is read before there is a sample, if that is something."""
+    constant = read.signal.otherwise
+    return constant.value if isinstance(read, Current) and constant is not None else None
+
+
 def _reads_of(atom: Atom) -> tuple[Read, ...]:
-    return tuple(dict.fromkeys(read for operand in operands(atom.condition) for read in reads(operand)))
+    """What a condition reads, and what it has to be known for that."""
+    read = [read for operand in operands(atom.condition) for read in reads(operand)]
+    return tuple(dict.fromkeys([*read, *(Current(each.signal) for each in read if isinstance(each, Opening))]))
 
 
 def _all_inputs(properties: Iterable[PropertySpecification]) -> Iterator[Read]:
@@ -168,9 +220,9 @@ def _all_inputs(properties: Iterable[PropertySpecification]) -> Iterator[Read]:
 
 
 def wanted_of(read: Read) -> Wanted:
-    """What the runtime calls what is read; nothing is read at openings here."""
+    """What the runtime calls what is read; a value at an opening is a current one before."""
     match read:
-        case Current(signal):
+        case Current(signal) | Opening(signal):
             return Input(signal.name)
         case Past(signal, samples):
             return Input(signal.name, samples)
@@ -180,5 +232,3 @@ def wanted_of(read: Read) -> Wanted:
             return sampling.Slope(signal.name)
         case New(signal):
             return sampling.New(signal.name)
-        case Opening():
-            raise ValueError(f"a value at an opening is not followed: {read}")

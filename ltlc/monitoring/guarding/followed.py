@@ -6,11 +6,14 @@ from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 from ltlc.monitoring.guarding.arrangement import NAN, Arrangement, Nan, PartPlan
+from ltlc.monitoring.guarding.openings import Openings
 from ltlc.runtime.guarding import Values
+from ltlc.runtime.plays import Play
 from ltlc.runtime.sampling import mark
 from ltlc.semantics.arenas import Joint, Outcome, Part, Place, Sent, Standing, standing
+from ltlc.semantics.instants import Instant
 from ltlc.semantics.timed_atoms import counts_of
-from ltlc.semantics.timed_run import TimedRun
+from ltlc.semantics.timed_run import TimedRun, as_held
 from ltlc.semantics.words import Letter
 
 
@@ -36,6 +39,7 @@ class Followed:
         self._answers: dict[str, bool | Nan | None] = {
             name: asked.answer(self._known) for name, asked in arrangement.asked.items()
         }
+        self._openings = [Openings(p.at_openings, p.openings) if p.openings else None for p in arrangement.plans]
         self._runs: list[TimedRun | None] = [None] * len(arrangement.plans)
         self._heard: dict[str, int] = {}
 
@@ -44,7 +48,9 @@ class Followed:
         other = object.__new__(Followed)
         vars(other).update(vars(self))
         other._known, other._answers, other._heard = [*self._known], {**self._answers}, {**self._heard}
-        other._runs = [run and run.fork() for run in self._runs]
+        other._openings = [opened and opened.fork() for opened in self._openings]
+        pairs = zip(self._runs, other._openings, strict=True)
+        other._runs = [run and run.fork(retake=opened.clock_step if opened else None) for run, opened in pairs]
         return other
 
     @property
@@ -69,9 +75,24 @@ class Followed:
         """Whether the guards may rest, whatever the conditions are that have no value yet."""
         if self._of.arena.outcome(self.joint) is not None:
             return False
+        return self._of.rests(self.joint, *self._held())
+
+    def _held(self) -> tuple[Letter, frozenset[str]]:
+        """The conditions that hold, and those of which that is not known."""
         held = frozenset(name for name, answer in self._answers.items() if answer is True)
-        unknown = frozenset(name for name in self._of.arena.read if not isinstance(self._answers.get(name), bool))
-        return self._of.rests(self.joint, held, unknown)
+        return held, frozenset(name for name in self._of.arena.read if not isinstance(self._answers.get(name), bool))
+
+    def play(self) -> Play | None:
+        """How a violation comes about that can no longer be avoided; None if one is there already, or need not come."""
+        if self.is_silent or self.is_blind or self._of.arena.outcome(self.joint) is not None:
+            return None
+        values = {
+            read: value
+            for asked in self._of.asked.values()
+            for read, value in zip(asked.wanted, asked.window.values(self._known), strict=True)
+            if value is not None
+        }
+        return self._of.find_play(self.joint, *self._held(), values)
 
     def due(self) -> int | None:
         """When something changes by time alone next."""
@@ -115,7 +136,7 @@ class Followed:
         update.take(known, time, tuple(taken.values()))
         mark(known, news, is_new=False)
         for name, asked in self._of.asked.items():
-            if topic in self._of.arena.read[name]:
+            if topic in self._of.arena.read[name] and not asked.is_at_opening:
                 self._answers[name] = asked.answer(known)
         return update.fresh
 
@@ -129,25 +150,36 @@ class Followed:
 
     def _at_message(self, k: int, plan: PartPlan, at: Standing, heard: _Heard) -> Standing:
         """Where part k is after a message."""
-        begins = at is Outcome.WAITING
-        if begins:
-            may = self._of.arena.beginnings(plan.part, heard.before, heard.sent, heard.topic)
-            if True not in may or not plan.begins_with(self._known) or self._lacks(plan):
-                return at
-            self._runs[k], at = self._begun(plan.part), Place(0, self._of.machines[k].initial)
+        begins, opened = at is Outcome.WAITING, self._openings[k]
+        if not (self._may_begin(plan, heard) if begins else heard.topic in plan.part.topics):
+            return at
+        is_step = begins or not heard.fresh.isdisjoint(plan.window.signals) or heard.topic in plan.window.topics
+        if opened is not None and is_step:
+            self._answers.update(opened.answers(self._known))
+        lacks = self._lacks(plan)
+        if begins and not lacks:
+            self._runs[k], at = self._begun(k, plan.part), Place(0, self._of.machines[k].initial)
         run = self._runs[k]
-        if run is None or not isinstance(at, Place) or not (begins or heard.topic in plan.part.topics):
+        if run is None or not isinstance(at, Place):
             return at
         news = frozenset(name for name, topic in plan.part.news.items() if topic == heard.topic)
-        is_read = not heard.fresh.isdisjoint(plan.window.signals) or heard.topic in plan.window.topics
-        if self._lacks(plan) or not (begins or is_read):
+        if lacks or not is_step:
             return self._along(k, at, run.hear(heard.time, news))
+        if opened is not None:
+            opened.step(self._known)
         held = frozenset(name for name in plan.atoms if self._answers[name] is True)
         return self._along(k, at, run.step(heard.time, held | news))
 
-    def _begun(self, part: Part) -> TimedRun:
+    def _may_begin(self, plan: PartPlan, heard: _Heard) -> bool:
+        """Whether a part begins with a message."""
+        may = self._of.arena.beginnings(plan.part, heard.before, heard.sent, heard.topic)
+        return True in may and plan.begins_with(self._known)
+
+    def _begun(self, k: int, part: Part) -> TimedRun:
         """A run of a part that begins now: ages count from what has come before."""
-        run = TimedRun(part.time.trackers, part.time.news, self._began, counts=counts_of(part.formula))
+        opened = self._openings[k]
+        retake = as_held if opened is None else opened.clock_step
+        run = TimedRun(part.time.trackers, part.time.news, self._began, retake, counts_of(part.formula))
         for name, topic in part.news.items():
             if topic in self._heard:
                 list(run.hear(self._heard[topic], [name]))
@@ -157,9 +189,12 @@ class Followed:
         """Whether something that a part compares is not a number."""
         return any(self._answers[name] is NAN for name in plan.atoms)
 
-    def _along(self, k: int, at: Standing, letters: Iterable[Letter]) -> Standing:
-        part = self._of.arena.parts[k]
+    def _along(self, k: int, at: Standing, letters: Iterable[Instant]) -> Standing:
+        part, opened = self._of.arena.parts[k], self._openings[k]
         for letter in letters:
+            if opened is not None:
+                opened.note(letter)
+                self._answers |= {a: a in letter for a in opened.asked if self._answers[a] is not NAN}
             if isinstance(at, Place):
                 at = standing(part, part.monitor.step(at.state, letter), self._of.clocks_after(k, at, letter))
         return at

@@ -10,22 +10,21 @@ import numpy as np
 
 from ltlc.base.diagnostics import Diagnostic
 from ltlc.dataclass import dataclass
+from ltlc.inputs.messages.texts import text_of
 from ltlc.inputs.recordings import Block, Recording
+from ltlc.inputs.recordings.bags import BagRecording
 from ltlc.inputs.recordings.blocks import ROWS, Places, Samples, packed
-from ltlc.inputs.recordings.reading import ReadOptions
+from ltlc.inputs.recordings.reading import ReadOptions, kept_name
 from ltlc.inputs.recordings.rows import Column
-from ltlc.monitoring.guarding.arrangement import Arrangement
+from ltlc.monitoring.guarding.arrangement import Arrangement, Solved
+from ltlc.monitoring.guarding.fallbacks import message_of, samples_in
 from ltlc.monitoring.guarding.followed import Followed
-from ltlc.monitoring.guarding.report import GuardReport
+from ltlc.monitoring.guarding.report import Done, GuardReport
 from ltlc.runtime import sampling
 from ltlc.runtime.guarding import Deed, Guard, Guards, Message, Values
 from ltlc.runtime.session import Plan
-from ltlc.semantics.arenas import Arena, Region
 from ltlc.semantics.durations import Nanoseconds
-from ltlc.specification.atoms import Atom
 from ltlc.specification.expressions import Field, Signal
-from ltlc.specification.fallbacks import value_in
-from ltlc.specification.guards import Fallback
 from ltlc.specification.guards import Guard as Stated
 from ltlc.specification.specification import Specification
 
@@ -37,21 +36,12 @@ MakePlan = Callable[[Collection[str]], Plan]
 
 
 @dataclass(frozen=True)
-class Solved:
-    """Guards that share properties: what they were solved on, where they may rest, and their conditions."""
-
-    guards: tuple[Stated, ...]
-    arena: Arena
-    region: Region
-    conditions: Mapping[str, Atom]
-
-
-@dataclass(frozen=True)
 class Guarding:
-    """The guards of `specification`, solved."""
+    """The guards of `specification`, solved. If it `keeps_messages`, a report has what came in and what left whole."""
 
     specification: Specification
     solved: Sequence[Solved]
+    keeps_messages: bool = False
 
     def through(
         self, plan: MakePlan, open_: Open, path: Path, signals: Mapping[str, Signal], reading: ReadOptions
@@ -61,6 +51,9 @@ class Guarding:
         Raises RecordingError.
         """
         wanted, commands = self.wanted(signals)
+        if self.keeps_messages:
+            guards = self.specification.guards
+            reading = replace(reading, kept=frozenset(topic for each in guards for topic in (each.raw, each.out)))
         recording = open_(path, wanted, reading)
         if commands.keys().isdisjoint(recording.columns):
             unguarded, own = open_(path, signals, reading), {name: name for name in commands.values()}
@@ -98,7 +91,7 @@ class GuardedRecording:
     """The run that left guards; `commands` has the names that these are read by, each with that of what is let through.
 
     It `is_unguarded` if the recording has no commands, and what was recorded behind the guard was taken for them. What
-    the guards did are the `deeds`, in the order of time; the `first` row has this time.
+    the guards have `done` is in the order of time; the `first` row has this time.
     """
 
     guarding: Guarding
@@ -107,7 +100,7 @@ class GuardedRecording:
     signals: Mapping[str, Signal]
     commands: Mapping[str, str]
     is_unguarded: bool = False
-    deeds: list[Deed] = field(default_factory=list)
+    done: list[Done] = field(default_factory=list)
     first: Nanoseconds | None = None
 
     @property
@@ -140,12 +133,18 @@ class GuardedRecording:
 
     def report(self, since: Nanoseconds | None, until: Nanoseconds | None) -> GuardReport:
         """What the guards did from the time `since` on, up to and including `until`; None is no limit."""
-        deeds = [
-            deed
-            for deed in self.deeds
-            if (since is None or deed.time >= since) and (until is None or deed.time <= until)
+        done = [
+            each
+            for each in self.done
+            if (since is None or each.deed.time >= since) and (until is None or each.deed.time <= until)
         ]
-        return GuardReport(self.guarding.specification.guards, deeds, self.is_unguarded)
+        definitions = {guard.out: self._definition(guard) for guard in self.guarding.specification.guards}
+        return GuardReport(self.guarding.specification.guards, done, self.is_unguarded, definitions)
+
+    def _definition(self, guard: Stated) -> str:
+        """A text that defines what a guard lets through, in the form `ros2msg`: as the recording does, if it does."""
+        types = dict(self.recording.types) if isinstance(self.recording, BagRecording) else {}
+        return text_of(guard.message, types[guard.message].messages) if guard.message in types else guard.definition
 
     def remarks(self) -> list[Diagnostic]:
         """See `Recording`."""
@@ -155,11 +154,12 @@ class GuardedRecording:
         """See `Recording`."""
         plan = self.plan(self.columns)
         run = GuardedRun(self.guarding, self.signals, self.commands, plan, is_unguarded=self.is_unguarded)
-        self.deeds = run.deeds
+        self.done = run.done
+        wanted = {*self.recording.columns, *(kept_name(raw) for raw in run.raws)}
         for block in self.recording.blocks():
             if self.first is None and len(block.times):
                 self.first = int(block.times[0])
-            for time, names, values, topics in block.rows({*self.recording.columns}):
+            for time, names, values, topics in block.rows(wanted):
                 run.row(time, dict(zip(names, values, strict=True)), topics)
                 if len(run.taken) >= ROWS:
                     yield run.block()
@@ -193,21 +193,20 @@ class GuardedRun:
         is_unguarded: bool = False,
     ) -> None:
         self.taken: list[Event] = []
-        self.deeds: list[Deed] = []
+        self.done: list[Done] = []
         self._signals, self._commands = signals, commands
         specification = guarding.specification
-        self._lead = specification.lead
-        self._raws = {guard.raw: guard.out for guard in specification.guards}
+        self._lead, self._stated, self._keeps = specification.lead, specification.guards, guarding.keeps_messages
+        self._whole: bytes | None = None
+        self.raws = {guard.raw: guard.out for guard in specification.guards}
         self._outs = {guard.out for guard in specification.guards}
         if is_unguarded:
-            self._raws = {out: out for out in self._outs}
+            self.raws = {out: out for out in self._outs}
         readings = [signal for signal in plan.signals if isinstance(signal, sampling.Reading)]
         self._topics = {signal.name: signal.topic for signal in readings}
         self._columns = {r.name: Column(signals[r.name].type, signals[r.name].numbers) for r in readings}
         properties = {each.label: each for each in specification.properties}
-        self._arranged = [
-            (some, Arrangement(some.arena, some.region, some.conditions, properties, plan)) for some in guarding.solved
-        ]
+        self._arranged = [(some, Arrangement(some, properties, plan)) for some in guarding.solved]
         self._guards: Guards | None = None
 
     def row(self, time: Nanoseconds, samples: Values, topics: Sequence[str]) -> None:
@@ -221,8 +220,8 @@ class GuardedRun:
             if name in self._topics and self._topics[name] not in self._outs:
                 messages.setdefault(self._topics[name], {})[name] = value
         for topic in topics:
-            if topic in self._raws:
-                commands.setdefault(self._raws[topic], {})
+            if topic in self.raws:
+                commands.setdefault(self.raws[topic], {})
             if topic not in self._outs:
                 messages.setdefault(topic, {})
         self.act(time)
@@ -230,7 +229,9 @@ class GuardedRun:
             guards = self._begun(time)
             self.taken.append(Event(time, topic, values))
             guards.hear(time, topic, values)
+        whole = {out: samples.get(kept_name(raw)) for raw, out in self.raws.items()}
         for out, values in commands.items():
+            self._whole = whole[out]
             self._begun(time).command(time, out, values)
 
     def act(self, time: Nanoseconds) -> None:
@@ -254,15 +255,26 @@ class GuardedRun:
         return self._guards
 
     def _guard(self, some: Solved, arrangement: Arrangement, began: Nanoseconds) -> Guard:
-        messages = [
-            _message(fallback, guard.out, self._signals, self._topics)
-            for guard in some.guards
-            for fallback in guard.fallbacks
-        ]
+        messages = [message for guard in some.guards for message in self._fallbacks(guard)]
         return Guard(Followed(arrangement, began), some.arena.outs, messages, self._lead)
 
+    def _message(self, deed: Deed) -> bytes | None:
+        """The command of a deed, in CDR: as it was recorded, or with the values that are known of it."""
+        if deed.command is None or self._whole is not None:
+            return None if deed.command is None else self._whole
+        (guard,) = (guard for guard in self._stated if guard.out in deed.outs)
+        return message_of(guard, {self._signals[name]: value for name, value in deed.command.items()})
+
+    def _fallbacks(self, guard: Stated) -> Iterator[Message]:
+        """The fallbacks of a guard, with what they have of the signals that are read."""
+        own = {name: self._signals[name] for name, topic in self._topics.items() if topic == guard.out}
+        for fallback in guard.fallbacks:
+            yield Message(fallback.name, guard.out, samples_in(fallback, guard, own))
+
     def _done(self, deed: Deed) -> None:
-        self.deeds.append(deed)
+        assert deed.otherwise is None or isinstance(deed.otherwise, Followed)
+        play = None if deed.otherwise is None else deed.otherwise.play()
+        self.done.append(Done(replace(deed, otherwise=None), play, self._message(deed) if self._keeps else None))
         if deed.values is not None:
             self.taken.append(Event(deed.time, deed.outs[0], deed.values))
 
@@ -282,12 +294,3 @@ class GuardedRun:
 
 def _rows(having: Iterator[bool]) -> Places:
     return np.flatnonzero(np.fromiter(having, np.bool_)).astype(np.int64)
-
-
-def _message(fallback: Fallback, out: str, signals: Mapping[str, Signal], topics: Mapping[str, str]) -> Message:
-    """`fallback` as it leaves on `out`: its samples of the signals that are read there."""
-    values: dict[str, sampling.Value] = {}
-    for name, topic in topics.items():
-        if topic == out and (constant := value_in(fallback, signals[name])) is not None:
-            values[name] = constant.value
-    return Message(fallback.name, out, values)

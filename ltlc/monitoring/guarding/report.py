@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from typing import Any
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any, NamedTuple
 
 from ltlc.dataclass import dataclass
 from ltlc.runtime.documents import json_value
 from ltlc.runtime.guarding import Action, Deed, Values
+from ltlc.runtime.plays import Play
 from ltlc.runtime.reports import value_text
 from ltlc.runtime.session import Session
 from ltlc.runtime.times import seconds
@@ -16,7 +17,7 @@ from ltlc.specification.guards import Guard
 MOST_LINES = 10
 """So many deeds of a guard are listed unless all are wanted."""
 
-_WORDS = {
+WORDS = {
     Action.PASSED: "passed",
     Action.CHANGED: "changed",
     Action.HELD: "held back",
@@ -25,55 +26,87 @@ _WORDS = {
 }
 
 
+class Done(NamedTuple):
+    """What a guard did, and how the world could otherwise have broken a property, if that had to be avoided.
+
+    Its command is the `message`, in CDR, if messages are kept.
+    """
+
+    deed: Deed
+    play: Play | None = None
+    message: bytes | None = None
+
+    def reason(self, *, whole: bool = False) -> str:
+        """Why, in words; with the whole play if that is wanted."""
+        if self.play is None:
+            return self.deed.reason
+        violation, moves = f"a violation of {self.play.labels}", self.play.text(whole=whole)
+        match self.deed.action:
+            case Action.SENT:
+                return f"{self.deed.reason}: otherwise {violation} could no longer be avoided: {moves}"
+            case Action.LOST:
+                return f"{violation} can no longer be avoided: {moves}"
+            case _:
+                return f"{violation} could no longer be avoided after it: {moves}"
+
+
+def sentence(out: str, counts: Mapping[Action, int], lost: str = "it lost") -> str:
+    """How often the guard that sends on `out` did what; `lost` says that it lost, if it did."""
+    shown = (f"{counts[action]:,} {WORDS[action]}" for action in Action if action is not Action.LOST)
+    return f"guard of {out}: {', '.join(shown)}{f'; {lost}' if counts[Action.LOST] else ''}"
+
+
 @dataclass(frozen=True)
 class GuardReport:
-    """What `guards` did in one run, in the order of time.
+    """What `guards` have `done` in one run, in the order of time.
 
-    It `is_unguarded` if the recording has no commands, and what was recorded behind the guard was taken for them.
+    It `is_unguarded` if the recording has no commands, and what was recorded behind the guard was taken for them. The
+    texts `definitions` define the messages that leave, by topic, in the form `ros2msg`.
     """
 
     guards: Sequence[Guard]
-    deeds: Sequence[Deed]
+    done: Sequence[Done]
     is_unguarded: bool
+    definitions: Mapping[str, str]
 
     @property
     def has_lost(self) -> bool:
         """Whether one could no longer keep its properties."""
-        return any(deed.action is Action.LOST for deed in self.deeds)
+        return any(each.deed.action is Action.LOST for each in self.done)
 
-    def text(self, session: Session, with_all: bool) -> str:
-        """A paragraph for each guard; of what it did, the first deeds, or all but what passed."""
-        return "".join("\n".join(self._lines(guard, session, with_all)) + "\n" for guard in self.guards)
+    def text(self, session: Session, with_all: bool, *, whole: bool = False) -> str:
+        """A paragraph for each guard; of what it did, the first deeds, or all but what passed, each with its reason."""
+        return "".join("\n".join(self._lines(guard, session, with_all, whole)) + "\n" for guard in self.guards)
 
-    def _lines(self, guard: Guard, session: Session, with_all: bool) -> Iterator[str]:
-        own = self._of(guard)
-        counts = {action: sum(deed.action is action for deed in own) for action in Action}
-        shown = (f"{counts[action]:,} {_WORDS[action]}" for action in Action if action is not Action.LOST)
-        yield f"guard of {guard.out}: {', '.join(shown)}{'; it lost' if counts[Action.LOST] else ''}"
+    def _lines(self, guard: Guard, session: Session, with_all: bool, whole: bool) -> Iterator[str]:
+        own = self.of(guard)
+        yield sentence(guard.out, {action: sum(each.deed.action is action for each in own) for action in Action})
         if self.is_unguarded:
             yield f"  {guard.raw} was not recorded: what was recorded on {guard.out} is taken for its commands"
-        acted = [deed for deed in own if deed.action is not Action.PASSED]
+        acted = [each for each in own if each.deed.action is not Action.PASSED]
         listed = acted if with_all else acted[:MOST_LINES]
-        for deed in listed:
-            yield f"  {session.scale.text(deed.time)}  {_WORDS[deed.action]}{_subject(deed)}: {deed.reason}"
+        for each in listed:
+            said = f"{WORDS[each.deed.action]}{subject(each.deed)}"
+            yield f"  {session.scale.text(each.deed.time)}  {said}: {each.reason(whole=whole)}"
         if len(listed) < len(acted):
             yield f"  and {len(acted) - len(listed):,} more: `--all` lists them"
 
-    def _of(self, guard: Guard) -> list[Deed]:
-        return [deed for deed in self.deeds if guard.out in deed.outs]
+    def of(self, guard: Guard) -> list[Done]:
+        """What one of the guards has done."""
+        return [each for each in self.done if guard.out in each.deed.outs]
 
     def document(self, session: Session) -> list[dict[str, Any]]:
         """An object for each guard, with lists of what it passed, changed, held back and sent."""
         return [self._document(guard, session) for guard in self.guards]
 
     def _document(self, guard: Guard, session: Session) -> dict[str, Any]:
-        own = self._of(guard)
-        listed = {action.value: [_report(deed, session) for deed in own if deed.action is action] for action in Action}
+        own = self.of(guard)
+        listed = {a.value: [_report(each, session) for each in own if each.deed.action is a] for a in Action}
         commands = guard.out if self.is_unguarded else guard.raw
         return {"raw": guard.raw, "out": guard.out, "commands_from": commands, **listed}
 
 
-def _subject(deed: Deed) -> str:
+def subject(deed: Deed) -> str:
     """What was asked for, and what left instead."""
     command = "" if deed.command is None else f" {_text(deed.command)}"
     if deed.message is None:
@@ -85,8 +118,8 @@ def _text(values: Values) -> str:
     return ", ".join(f"{name} = {value_text(value)}" for name, value in values.items()) or "a message"
 
 
-def _report(deed: Deed, session: Session) -> dict[str, Any]:
-    zero = session.beginning
+def _report(done: Done, session: Session) -> dict[str, Any]:
+    deed, zero = done.deed, session.beginning
     return {
         "time": seconds(deed.time),
         "time_ns": deed.time,
@@ -94,7 +127,8 @@ def _report(deed: Deed, session: Session) -> dict[str, Any]:
         "command": _json(deed.command),
         "sent": _json(deed.values),
         "message": deed.message,
-        "reason": deed.reason,
+        "reason": done.reason(),
+        "play": None if done.play is None else done.play.document(),
     }
 
 

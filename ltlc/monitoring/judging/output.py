@@ -10,6 +10,15 @@
 
 There is a message at the beginning and at each change, and one at the end. `PROPERTY` is the label, with `_` for what
 cannot stand in the name of a topic.
+
+If guards were tried, there is for each that sends on `OUT`, at each thing that it did:
+
+| topic | type | |
+|---|---|---|
+| `OUT` | that of `OUT` | what left: commands that passed, as they were recorded, and fallbacks |
+| `/ltlc/guard/OUT/not_passed` | that of `OUT` | the commands that were changed or held back |
+| `/ltlc/guard/OUT/action` | std_msgs/String | `passed`, `changed`, `held_back`, `sent` or `lost` |
+| `/diagnostics` | diagnostic_msgs/DiagnosticArray | the same in words, with the reason |
 """
 
 from __future__ import annotations
@@ -25,13 +34,17 @@ from rosbags.typesys.store import Typestore  # noqa: TID251
 
 from ltlc import __version__
 from ltlc.inputs.recordings.trails import Trail
+from ltlc.monitoring.guarding.fallbacks import data_of
+from ltlc.monitoring.guarding.report import WORDS, GuardReport, subject
 from ltlc.monitoring.judging.run import RunReport
+from ltlc.runtime.guarding import Action
 from ltlc.runtime.reports import explanation, moment_text, printable, topic_names, value_text
 from ltlc.runtime.session import Session
 from ltlc.runtime.times import SECOND
 from ltlc.runtime.tracking import Track
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.verdicts import Verdict
+from ltlc.specification.guards import Guard
 
 CODES = {
     Verdict.VIOLATED: -2,
@@ -50,11 +63,18 @@ class NotWritableError(Exception):
     """Nothing was judged, or a time of the recording is before 1970 or too late for the seconds of a header."""
 
 
+class Whole(NamedTuple):
+    """A message in CDR, and a text that defines its type, in the form `ros2msg`."""
+
+    data: bytes
+    definition: str
+
+
 class _Message(NamedTuple):
     time: Nanoseconds
     topic: str
     type: str
-    fields: Mapping[str, Any]
+    fields: Mapping[str, Any] | Whole
 
 
 def verdicts_mcap(report: RunReport) -> bytes:
@@ -68,6 +88,9 @@ def verdicts_mcap(report: RunReport) -> bytes:
         messages += _verdicts(session, track, trail, name)
         if track.property.scopes:
             messages += _episodes(session, trail, name)
+    if report.guard is not None:
+        for guard, name in zip(report.guard.guards, topic_names([g.out for g in report.guard.guards]), strict=True):
+            messages += _guarded(report.guard, guard, f"/ltlc/guard/{name}")
     messages.sort(key=lambda message: message.time)
     for time in (each.time for each in messages):
         if not 0 <= time < 2**31 * SECOND:
@@ -86,18 +109,40 @@ def _verdicts(session: Session, track: Track, trail: Trail, name: str) -> Iterat
     yield from _verdict(end, track, name, track.verdict, explanation(session, track))
 
 
+def _guarded(report: GuardReport, guard: Guard, name: str) -> Iterator[_Message]:
+    """What a guard did: what left it, what did not pass, and why."""
+    definition = report.definitions[guard.out]
+    fallbacks = {each.name: data_of(each, guard, definition) for each in guard.fallbacks}
+    for done in report.of(guard):
+        deed = done.deed
+        if deed.action is not Action.PASSED and done.message is not None:
+            yield _Message(deed.time, f"{name}/not_passed", guard.message, Whole(done.message, definition))
+        left = done.message if deed.message is None else fallbacks[deed.message]
+        if deed.values is not None and left is not None:
+            yield _Message(deed.time, guard.out, guard.message, Whole(left, definition))
+        yield _Message(deed.time, f"{name}/action", "std_msgs/msg/String", {"data": deed.action.value})
+        level = {Action.PASSED: 0, Action.LOST: 2}.get(deed.action, 1)
+        said = f"{WORDS[deed.action]}{subject(deed)}{f': {reason}' if (reason := done.reason(whole=True)) else ''}"
+        yield _status(deed.time, level, f"guard of {guard.out}", said, ())
+
+
+def _status(time: Nanoseconds, level: int, name: str, message: str, values: Iterable[tuple[str, str]]) -> _Message:
+    status = {
+        "level": level,
+        "name": f"ltlc: {printable(name)}",
+        "message": printable(message),
+        "hardware_id": "ltlc",
+        "values": [{"key": key, "value": value} for key, value in values],
+    }
+    return _Message(time, "/diagnostics", "diagnostic_msgs/msg/DiagnosticArray", {"status": [status]})
+
+
 def _verdict(time: Nanoseconds, track: Track, name: str, verdict: Verdict, remarks: list[str]) -> Iterator[_Message]:
     yield _Message(time, f"{name}/verdict", "std_msgs/msg/String", {"data": verdict.value})
     yield _Message(time, f"{name}/code", "std_msgs/msg/Int8", {"data": CODES[verdict]})
     yield _Message(time, f"{name}/violated", "std_msgs/msg/Bool", {"data": verdict is Verdict.VIOLATED})
-    status = {
-        "level": _LEVELS.get(verdict, 0),
-        "name": f"ltlc: {printable(track.property.label)}",
-        "message": "; ".join([verdict.value.replace("_", " "), *remarks]),
-        "hardware_id": "ltlc",
-        "values": [{"key": key, "value": value} for key, value in _known(track, verdict)],
-    }
-    yield _Message(time, "/diagnostics", "diagnostic_msgs/msg/DiagnosticArray", {"status": [status]})
+    said = "; ".join([verdict.value.replace("_", " "), *remarks])
+    yield _status(time, _LEVELS.get(verdict, 0), track.property.label, said, _known(track, verdict))
 
 
 def _known(track: Track, verdict: Verdict) -> Iterator[tuple[str, str]]:
@@ -130,7 +175,8 @@ def _written(messages: list[_Message], provenance: Mapping[str, Any]) -> bytes:
     """`messages`, in CDR, with the definitions of their types, and what they were made of."""
     store = get_typestore(Stores.ROS2_JAZZY)
     typed = (
-        (time, topic, type_, _message(store.types, type_, fields, time)) for time, topic, type_, fields in messages
+        (time, topic, type_, fields if isinstance(fields, Whole) else _message(store.types, type_, fields, time))
+        for time, topic, type_, fields in messages
     )
     return mcap_of(typed, store, provenance)
 
@@ -138,19 +184,21 @@ def _written(messages: list[_Message], provenance: Mapping[str, Any]) -> bytes:
 def mcap_of(
     messages: Iterable[tuple[Nanoseconds, str, str, Any]], store: Typestore, provenance: Mapping[str, Any]
 ) -> bytes:
-    """A file of messages, each with its time, topic, type, and itself; the definitions are those of `store`."""
+    """A file of messages, each with its time, topic, type, and itself, or it whole; `store` defines the others."""
     file = io.BytesIO()
     writer = Writer(file)
     writer.start(profile="ros2", library=f"ltlc {__version__}")
-    schemas: dict[str, int] = {}
+    schemas: dict[tuple[str, str], int] = {}
     channels: dict[str, int] = {}
     for sequence, (time, topic, type_, message) in enumerate(messages):
-        if type_ not in schemas:
-            definition = store.generate_msgdef(type_, ros_version=2)[0].encode()
-            schemas[type_] = writer.register_schema(type_, "ros2msg", definition)
+        given = message.definition if isinstance(message, Whole) else ""
+        if (type_, given) not in schemas:
+            definition = given or store.generate_msgdef(type_, ros_version=2)[0]
+            schemas[type_, given] = writer.register_schema(type_, "ros2msg", definition.encode())
         if topic not in channels:
-            channels[topic] = writer.register_channel(topic, "cdr", schemas[type_])
-        writer.add_message(channels[topic], time, bytes(store.serialize_cdr(message, type_)), time, sequence)
+            channels[topic] = writer.register_channel(topic, "cdr", schemas[type_, given])
+        data = message.data if isinstance(message, Whole) else bytes(store.serialize_cdr(message, type_))
+        writer.add_message(channels[topic], time, data, time, sequence)
     writer.add_metadata("ltlc", {"provenance": json.dumps(provenance)})
     writer.finish()
     return file.getvalue()

@@ -374,7 +374,11 @@ class Judge:
 
     def remarks_on(self, path: Path, recording: Recording) -> list[Diagnostic]:
         """Those on the monitors; columns of the recording at `path` that nothing reads, signals that nothing gives."""
-        return [*self.remarks, *remarks(self._properties, self.specification, path, recording)]
+        is_guarded = self.guarding is not None
+        return [
+            *self.remarks,
+            *remarks(self._properties, self.specification, path, recording, is_guarded=is_guarded),
+        ]
 
     def _left_out(self, session: Session) -> Iterator[Diagnostic]:
         """A warning for each property some messages of which found no place."""

@@ -29,7 +29,7 @@ from ltlc.inputs.recordings.bags.merging import Rows
 from ltlc.inputs.recordings.bags.messages import Messages, Topic
 from ltlc.inputs.recordings.bags.scalars import MisfitError
 from ltlc.inputs.recordings.blocks import Places, Ragged, Samples, kind_of
-from ltlc.inputs.recordings.reading import ReadOptions, Stamp
+from ltlc.inputs.recordings.reading import ReadOptions, Stamp, kept_name
 from ltlc.inputs.recordings.rows import Column
 from ltlc.runtime.times import SECOND
 from ltlc.specification.expressions import Field, Signal
@@ -52,7 +52,7 @@ class TopicReader:
     """Reads signals from the messages of a topic, as they are `defined`.
 
     Its rows have the times of their headers if it `has_stamps`; `unstamped` counts those messages that were omitted
-    because their headers have no time.
+    because their headers have no time. If they are `kept`, the messages are samples themselves, of that name.
     """
 
     defined: Defined
@@ -60,6 +60,7 @@ class TopicReader:
     has_stamps: bool
     signals: dict[str, tuple[Signal, Field]] = field(default_factory=dict)
     unstamped: int = 0
+    kept: str = ""
 
     def _columns(self, messages: Messages) -> dict[Path, Samples]:
         """The fields of the messages. Raises MisfitError."""
@@ -71,6 +72,10 @@ class TopicReader:
         """The messages as rows. Raises MisfitError."""
         found = self._columns(messages)
         samples = {name: _as_kept(signal, found.get(field.path)) for name, (signal, field) in self.signals.items()}
+        if self.kept:
+            whole = np.empty(len(messages), object)
+            whole[:] = [bytes(each) for each in unpacked(messages).raw()]
+            samples[self.kept] = Samples(np.arange(len(messages)), whole)
         if not self.has_stamps or not len(messages):
             return Rows(messages.times, messages.places, samples)
         seconds, rest = (found[path].values for path in _STAMP)
@@ -189,6 +194,7 @@ class Plan:
         has_stamps = self._reading.stamp is Stamp.HEADER and _has_stamps(types, field.message)
         reader = self.readers.setdefault(field.topic, TopicReader(defined, field.message, has_stamps))
         reader.signals[name] = (signal, field)
+        reader.kept = kept_name(field.topic) if field.topic in self._reading.kept else ""
 
     def _compare(self, name: str, signal: Signal, field: Field) -> None:
         """Keep how others define a field that the bag defines, if it is otherwise."""
