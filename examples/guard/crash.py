@@ -33,9 +33,10 @@ ZERO: Mapping[str, Mapping[str, object]] = {
     "/cmd_vel": {"linear/x": 0.0, "angular/z": 0.0},
     "/arm": {"data": 0.0},
     "/goal": {"data": ""},
+    "/goto": {"pose/position/x": 0.0, "pose/position/y": 0.0},
     "/speed_limit": {"data": 0.0},
 }
-"""What is in a message in which nothing is set."""
+"""The fields of commands that the robot reads, as they are in a message in which nothing is set."""
 
 
 class Way(Protocol):
@@ -141,9 +142,9 @@ def rows(heard: Sequence[tuple[int, Message]]) -> Iterator[tuple[Decimal, dict[s
         yield Decimal(time) / 1_000_000_000, {f"{topic}/{path}": value for path, value in values.items()}
 
 
-def violated(name: str, heard: Sequence[tuple[int, Message]]) -> str:
+def violated(name: str, recording: Path | Sequence[tuple[Decimal, dict[str, object]]]) -> str:
     """How many properties are violated by what the robot was told, of how many."""
-    verdicts = ltlc.run(HERE / f"{name}.txt", list(rows(heard))).verdicts
+    verdicts = ltlc.run(HERE / f"{name}.txt", recording).verdicts
     return f"{sum(each is ltlc.Verdict.VIOLATED for each in verdicts.values())} of {len(verdicts)}"
 
 
@@ -183,7 +184,7 @@ def tried(name: str, folder: Path | None = None) -> Row:
         folder.mkdir(parents=True, exist_ok=True)
         lines = (json.dumps({"time": float(time), **row}) + "\n" for time, row in rows(way.heard))
         (folder / f"{name}.jsonl").write_text("".join(lines), encoding="utf-8")
-    broken, unbroken = violated(name, way.heard), violated(name, guarded.heard)
+    broken, unbroken = (violated(name, list(rows(each.heard))) for each in (way, guarded))
     return Row(name, before.shown(crashed), broken, after.shown(kept), unbroken, guarded.did)
 
 

@@ -46,7 +46,7 @@ class Scene:
         raise NotImplementedError
 
     def shown(self, world: World) -> str:
-        """What the simulation has shown, in numbers."""
+        """What the robot did, in numbers."""
         raise NotImplementedError
 
 
@@ -102,7 +102,7 @@ class EStop(Scene):
 
     def shown(self, world: World) -> str:
         """See `Scene`."""
-        return crash(world, f"{self._reset - self._pressed:.2f} m from the stop to the reset, then drives on")
+        return crash(world, f"goes {self._reset - self._pressed:.2f} m from the stop to the reset, then drives on")
 
 
 class Localized(Scene):
@@ -126,7 +126,7 @@ class Localized(Scene):
 
     def shown(self, world: World) -> str:
         """See `Scene`."""
-        return crash(world, f"{self._before:.2f} m before it is localized")
+        return crash(world, f"goes {self._before:.2f} m before it is localized")
 
 
 class Slew(Scene):
@@ -158,7 +158,7 @@ class Slew(Scene):
 
     def shown(self, world: World) -> str:
         """See `Scene`."""
-        return "the load falls" if self._tilt > 45 else f"the load tilts by {self._tilt:.1f}° at most"
+        return "loses the load" if self._tilt > 45 else f"keeps the load, which tilts by {self._tilt:.1f}° at most"
 
 
 class Fence(Scene):
@@ -181,7 +181,7 @@ class Fence(Scene):
 
     def shown(self, world: World) -> str:
         """See `Scene`."""
-        return "falls off the edge" if world.has_fallen else f"at most {self._farthest - 4:.2f} m outside"
+        return "falls off the edge" if world.has_fallen else f"gets {self._farthest - 4:.2f} m outside at most"
 
 
 class Arm(Scene):
@@ -228,7 +228,7 @@ class Joystick(Scene):
 
     def shown(self, world: World) -> str:
         """See `Scene`."""
-        return crash(world, f"{world.driven - self._heard:.2f} m after the last word of the operator")
+        return crash(world, f"goes {world.driven - self._heard:.2f} m after the last word of the operator")
 
 
 class Dock(Scene):
@@ -253,7 +253,7 @@ class Dock(Scene):
         """See `Scene`."""
         way = math.dist(world.position, self.layout.places["dock"])
         empty = f"stands with an empty battery, {way:.1f} m from the dock"
-        return f"the charge is {self._lowest * 100:.0f} % at least" if self._lowest > 0 else empty
+        return f"keeps a charge of {self._lowest * 100:.0f} % at least" if self._lowest > 0 else empty
 
 
 class Tools(Scene):
