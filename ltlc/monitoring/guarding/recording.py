@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import field, replace
 from pathlib import Path
+from typing import cast
 
 import numpy as np
 
@@ -272,8 +273,8 @@ class GuardedRun:
             yield Message(fallback.name, guard.out, samples_in(fallback, guard, own))
 
     def _done(self, deed: Deed) -> None:
-        assert deed.otherwise is None or isinstance(deed.otherwise, Followed)
-        play = None if deed.otherwise is None else deed.otherwise.play()
+        followed = cast("Followed | None", deed.otherwise)
+        play = None if followed is None else followed.play()
         self.done.append(Done(replace(deed, otherwise=None), play, self._message(deed) if self._keeps else None))
         if deed.values is not None:
             self.taken.append(Event(deed.time, deed.outs[0], deed.values))
