@@ -19,6 +19,7 @@ from typing import Any, Self, TextIO
 from stepping import from_text
 
 from ltlc.backends import emit
+from ltlc.interfaces.building.guards import guard_entries, guard_programs
 
 PATIENCE = 300.0
 """How long to wait for what has to happen, in s: so long that only what will never happen is given up."""
@@ -114,7 +115,9 @@ def _is_free(port: int) -> bool:
 
 def emitted_text(text: str, name: str = "watch.txt") -> str:
     """The emitted node for a specification in a file called `name`."""
-    return emit("ros2", *from_text(text, name))
+    compiled, specification = from_text(text, name)
+    guards = guard_programs(specification, compiled, guard_entries(specification, compiled))
+    return emit("ros2", compiled, specification, guards)
 
 
 def emitted(text: str, folder: Path, name: str = "watch") -> Path:

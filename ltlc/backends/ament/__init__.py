@@ -19,10 +19,11 @@ from ltlc.backends.ros2.inline import Import, import_lines, module_text
 from ltlc.backends.ros2.readers import read_topics
 from ltlc.backends.templates import template
 from ltlc.compiler import Compiled
+from ltlc.program.guards import GuardProgram
 from ltlc.runtime import MODULES
 from ltlc.specification.specification import Specification
 
-OWN_NAMES = frozenset({"INFINITY", "PROVENANCE", "topics_to_read"})
+OWN_NAMES = frozenset({"INFINITY", "PROVENANCE", "topics_to_guard", "topics_to_read"})
 """Names of the module of the properties; those made from a specification must not hide them."""
 
 ROS_PACKAGES = ("diagnostic_msgs", "rcl_interfaces", "rclpy", "std_msgs")
@@ -35,7 +36,11 @@ def package_name(stem: str) -> str:
 
 
 def emit(
-    compiled: Sequence[Compiled], specification: Specification, runs: Sequence[Any], metadata: Metadata
+    compiled: Sequence[Compiled],
+    specification: Specification,
+    runs: Sequence[Any],
+    metadata: Metadata,
+    guards: Sequence[GuardProgram] = (),
 ) -> dict[str, str]:
     """The files of the package, by their paths in it.
 
@@ -46,9 +51,11 @@ def emit(
     package = package_name(stem)
     topics = read_topics(compiled)
     messages = sorted({topic.message.split("/")[0] for topic in topics})
-    told = context(compiled, specification, OWN_NAMES)
+    told = context(compiled, specification, OWN_NAMES, guards)
     has_numbers = "INFINITY" in told["plan"]
-    code = "\n".join([told["plan"], *told["readers"], told["topics_to_read"], "Any", "math" * has_numbers])
+    code = "\n".join(
+        [told["plan"], *told["readers"], told["topics_to_read"], told["topics_to_guard"], "Any", "math" * has_numbers]
+    )
     about = told | {
         "package": package,
         "node": node_name(stem),
