@@ -11,7 +11,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Self, TextIO
@@ -126,6 +126,20 @@ def emitted(text: str, folder: Path, name: str = "watch") -> Path:
     specification.write_text(text, encoding="utf-8")
     node.write_text(emitted_text(text, specification.name), encoding="utf-8")
     return node
+
+
+def inside(names: Mapping[str, Any], parameters: Mapping[str, object]) -> tuple[Any, Any]:
+    """The ROS node called `watch`, and what judges its messages, of the emitted node that defines `names`."""
+    import rclpy
+    from rclpy.signals import SignalHandlerOptions
+
+    arguments = [word for name, value in parameters.items() for word in ("-p", f"{name}:={value}")]
+    rclpy.init(args=["--ros-args", *arguments], signal_handler_options=SignalHandlerOptions.NO)
+    node = rclpy.create_node("watch", automatically_declare_parameters_from_overrides=True)
+    plan = names["plan"]()
+    options = names["read_options"](node, plan)
+    topics, guarded = names["topics_to_read"](), names["topics_to_guard"]()
+    return node, names["Watch"](node, plan, topics, guarded, options, names["PROVENANCE"], names["Pulse"]())
 
 
 class Program:
