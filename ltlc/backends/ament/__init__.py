@@ -14,6 +14,7 @@ from pathlib import PurePath
 from typing import Any
 
 from ltlc.backends.ament.metadata import Metadata
+from ltlc.backends.names import Names, variable
 from ltlc.backends.ros2 import context, node, node_name
 from ltlc.backends.ros2.inline import Import, import_lines, module_text
 from ltlc.backends.ros2.readers import read_topics
@@ -21,6 +22,7 @@ from ltlc.backends.templates import template
 from ltlc.compiler import Compiled
 from ltlc.program.guards import GuardProgram
 from ltlc.runtime import MODULES
+from ltlc.specification.guards import Guard
 from ltlc.specification.specification import Specification
 
 OWN_NAMES = frozenset({"INFINITY", "PROVENANCE", "topics_to_guard", "topics_to_read"})
@@ -50,6 +52,8 @@ def emit(
     stem = PurePath(specification.source.name).stem
     package = package_name(stem)
     topics = read_topics(compiled)
+    guarded = _guarded(specification.guards)
+    namespaced = {t.name for t in topics if t.name.startswith("/")}.difference(topic for _, topic, _ in guarded)
     messages = sorted({topic.message.split("/")[0] for topic in topics})
     told = context(compiled, specification, OWN_NAMES, guards)
     has_numbers = "INFINITY" in told["plan"]
@@ -59,7 +63,8 @@ def emit(
     about = told | {
         "package": package,
         "node": node_name(stem),
-        "topics": [topic.name for topic in topics if topic.name.startswith("/")],
+        "topics": [topic.name for topic in topics if topic.name in namespaced],
+        "guarded": guarded,
         "packages": sorted({*ROS_PACKAGES, *messages}),
         "metadata": metadata,
         "has_numbers": has_numbers,
@@ -96,6 +101,13 @@ def _templates(package: str) -> dict[str, str]:
         "test.py.jinja": f"test/test_{package}.py",
         "recordings.md.jinja": "test/recordings/README.md",
     }
+
+
+def _guarded(guards: Sequence[Guard]) -> list[tuple[str, str, str]]:
+    """The arguments of a launch file for the topics of guards: a name, the topic, and what it is."""
+    names = Names(frozenset({"robot", "parameters", "use_sim_time"}))
+    topics = [pair for guard in guards for pair in ((guard.raw, "come in"), (guard.out, "leave"))]
+    return [(names.unique(variable(topic)), topic, what) for topic, what in topics]
 
 
 def _lines_of(runs: Sequence[Sequence[Any]]) -> str:
