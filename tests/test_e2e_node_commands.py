@@ -138,8 +138,9 @@ def begun(drive: Drive) -> None:
 
 def guard_of(drive: Drive) -> dict[str, Any]:
     """What the node reports of its guard in the end."""
-    (found,) = next(line for line in reversed(drive.node.lines) if line.get("final"))["guard"]
-    return found
+    found: list[dict[str, Any]] = next(line for line in reversed(drive.node.lines) if line.get("final"))["guard"]
+    assert len(found) == 1
+    return found[0]
 
 
 def test_nothing_leaves_before_the_sensors_have_spoken_and_then_commands_pass_bit_for_bit(drive: Drive) -> None:
