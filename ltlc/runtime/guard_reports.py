@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections import Counter, deque
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from typing import Any
 
 from ltlc.runtime.documents import json_value
@@ -20,12 +21,12 @@ ACTION_WORDS = {
 }
 
 
-def counts_text(out: str, counts: Counter[Action]) -> str:
-    """How often the guard of the topic `out` did what."""
+def counts_text(out: str, counts: Mapping[Action, int], lost: str = "it lost") -> str:
+    """How often the guard of the topic `out` did what; that it `lost`, if it did."""
     did = (action for action in Action if action is not Action.LOST)
     shown = (f"{counts[action]:,} {ACTION_WORDS[action]}" for action in did)
-    lost = "; it lost" if counts[Action.LOST] else ""
-    return f"guard of {out}: {', '.join(shown)}{lost}"
+    end = f"; {lost}" if counts[Action.LOST] else ""
+    return f"guard of {out}: {', '.join(shown)}{end}"
 
 
 def deed_text(deed: Deed) -> str:
@@ -75,7 +76,7 @@ class Tally:
     def add(self, deed: Deed) -> None:
         """The guard did something."""
         self.counts[deed.action] += 1
-        self._last[deed.action].append(deed)
+        self._last[deed.action].append(replace(deed, otherwise=None))
 
     def last(self, action: Action) -> Deed | None:
         """What it did last of an action."""
