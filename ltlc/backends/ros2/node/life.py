@@ -89,9 +89,9 @@ def watched(stop: threading.Event, node: Node, watch: Watch) -> int:
     """Watch until it ends or breaks, and report the verdicts; the exit code."""
     try:
         watch_until(stop, node, watch)
-    except UnusableError:
-        node.destroy_node()
-        raise
+    except UnusableError as error:
+        print(f"{node.get_name()}: {error}", file=sys.stderr)
+        return UNUSABLE
     except Exception:  # noqa: BLE001
         watch.fail(traceback.format_exc())
     return watch.end()
