@@ -11,7 +11,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Self, TextIO
@@ -19,6 +19,7 @@ from typing import Any, Self, TextIO
 from stepping import from_text
 
 from ltlc.backends import emit
+from ltlc.interfaces.building.guards import guard_entries, guard_programs
 
 PATIENCE = 300.0
 """How long to wait for what has to happen, in s: so long that only what will never happen is given up."""
@@ -114,7 +115,9 @@ def _is_free(port: int) -> bool:
 
 def emitted_text(text: str, name: str = "watch.txt") -> str:
     """The emitted node for a specification in a file called `name`."""
-    return emit("ros2", *from_text(text, name))
+    compiled, specification = from_text(text, name)
+    guards = guard_programs(specification, compiled, guard_entries(specification, compiled))
+    return emit("ros2", compiled, specification, guards)
 
 
 def emitted(text: str, folder: Path, name: str = "watch") -> Path:
@@ -123,6 +126,20 @@ def emitted(text: str, folder: Path, name: str = "watch") -> Path:
     specification.write_text(text, encoding="utf-8")
     node.write_text(emitted_text(text, specification.name), encoding="utf-8")
     return node
+
+
+def inside(names: Mapping[str, Any], parameters: Mapping[str, object]) -> tuple[Any, Any]:
+    """The ROS node called `watch`, and what judges its messages, of the emitted node that defines `names`."""
+    import rclpy
+    from rclpy.signals import SignalHandlerOptions
+
+    arguments = [word for name, value in parameters.items() for word in ("-p", f"{name}:={value}")]
+    rclpy.init(args=["--ros-args", *arguments], signal_handler_options=SignalHandlerOptions.NO)
+    node = rclpy.create_node("watch", automatically_declare_parameters_from_overrides=True)
+    plan = names["plan"]()
+    options = names["read_options"](node, plan)
+    topics, guarded = names["topics_to_read"](), names["topics_to_guard"]()
+    return node, names["Watch"](node, plan, topics, guarded, options, names["PROVENANCE"], names["Pulse"]())
 
 
 class Program:

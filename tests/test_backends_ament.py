@@ -110,6 +110,26 @@ def remaps(launch: Path) -> dict[str, str]:
     return {str(r.get("from")): str(r.get("to")) for r in ElementTree.parse(launch).getroot().iter("remap")}
 
 
+def test_a_launch_file_moves_the_topics_of_a_guard_to_where_its_arguments_say(tmp_path: Path) -> None:
+    text = "guard /raw to out\ndecl speed out Float64.data\ndecl near /near Bool.data\nnever new speed and near\n"
+    (tmp_path / "watch.txt").write_text(text, encoding="utf-8")
+    package = tmp_path / "package"
+    with quick_gate():
+        assert main(["build", str(tmp_path / "watch.txt"), "--target", "ament", "-o", str(package)]) == 0
+    launch = package / "launch" / "watch_monitor.launch.xml"
+    assert remaps(launch) == {
+        "/raw": "$(var robot)$(var raw)",
+        "/out": "$(var robot)$(var out)",
+        "/near": "$(var robot)/near",
+    }
+    given = {each.get("name"): each.get("default") for each in ElementTree.parse(launch).getroot().iter("arg")}
+    assert given.items() >= {"raw": "/raw", "out": "/out"}.items()
+    assert (
+        "`raw:=TOPIC` is where commands come in, `out:=TOPIC` is where commands leave"
+        in (package / "README.md").read_text()
+    )
+
+
 def test_a_launch_file_moves_the_topics_into_the_namespace_of_the_robot(package: Path) -> None:
     launch = package / "launch" / "watch_monitor.launch.xml"
     assert remaps(launch) == {topic: f"$(var robot){topic}" for topic in ("/scan", "/odom")}

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from ros_support import emitted_text, own_domain
+from ros_support import emitted_text, inside, own_domain
 
 from ltlc.assurance.programs import load
 
@@ -38,16 +38,10 @@ def names() -> dict[str, Any]:
 def watch(names: dict[str, Any], tmp_path: Path) -> Iterator[Callable[..., Any]]:
     """Makes the inside of a node that records what it judges, and what hands messages to it by topic."""
     import rclpy
-    from rclpy.signals import SignalHandlerOptions
 
     def make(**parameters: object) -> Any:
         given = {"record": str(tmp_path / "drive.jsonl"), "jsonl": str(tmp_path / "verdicts.jsonl"), **parameters}
-        arguments = [word for name, value in given.items() for word in ("-p", f"{name}:={value}")]
-        rclpy.init(args=["--ros-args", *arguments], signal_handler_options=SignalHandlerOptions.NO)
-        node = rclpy.create_node("watch", automatically_declare_parameters_from_overrides=True)
-        plan = names["plan"]()
-        options = names["read_options"](node, plan)
-        watch = names["Watch"](node, plan, names["topics_to_read"](), options, names["PROVENANCE"], names["Pulse"]())
+        node, watch = inside(names, given)
         listeners = {each.topic_name: each.callback for each in node.subscriptions if each.topic_name in ("/a", "/b")}
         assert set(listeners) == {"/a", "/b"}
         return node, watch, listeners
@@ -78,7 +72,7 @@ def recorded(folder: Path) -> list[float]:
 def test_messages_are_judged_in_the_order_of_the_clock_and_then_of_their_receipt(
     is_simulated: bool, watch: Callable[..., Any], tmp_path: Path
 ) -> None:
-    node, inside, listeners = watch(use_sim_time=str(is_simulated).lower())
+    node, within, listeners = watch(use_sim_time=str(is_simulated).lower())
     draw, begun, clock = random.Random(1), time.time_ns() - 100 * SECOND, 0
     expected: list[float] = []
     numbers = dict.fromkeys(listeners, 0)
@@ -95,8 +89,8 @@ def test_messages_are_judged_in_the_order_of_the_clock_and_then_of_their_receipt
                 handed(listeners[topic], numbers[topic], begun + received, wire(float(received)))
                 waiting.append((clock, received))
         expected += [float(received) for _, received in sorted(waiting)]
-        inside.attend(lambda looks: True)
-    inside.end()
+        within.attend(lambda looks: True)
+    within.end()
     assert recorded(tmp_path) == expected
 
 
@@ -109,13 +103,13 @@ def be_at(node: Any, seconds: int) -> None:
 
 
 def test_a_malformed_message_is_counted_and_makes_no_step(watch: Callable[..., Any], tmp_path: Path) -> None:
-    _, inside, listeners = watch()
+    _, within, listeners = watch()
     begun = time.time_ns() - SECOND
     for number, data in enumerate([wire(1.0), b"", wire(1.0)[:7], wire(2.0)], 1):
         handed(listeners["/a"], number, begun + number, data)
         handed(listeners["/b"], number, begun + number, wire(float(number)))
-    inside.attend(lambda looks: True)
-    assert inside.end() == 3
+    within.attend(lambda looks: True)
+    assert within.end() == 3
     final = json.loads((tmp_path / "verdicts.jsonl").read_text(encoding="utf-8").splitlines()[-1])
     (low,) = final["properties"]
     assert (low["steps"], low["malformed_messages"], low["verdict"]) == (5, {"/a": 2}, "presumably_satisfied")
@@ -123,13 +117,13 @@ def test_a_malformed_message_is_counted_and_makes_no_step(watch: Callable[..., A
 
 
 def test_a_gap_and_a_doubt_add_up_to_no_number(watch: Callable[..., Any], tmp_path: Path) -> None:
-    _, inside, listeners = watch()
+    _, within, listeners = watch()
     handed(listeners["/b"], 1, time.time_ns(), wire(1.0))
     arrived = time.time_ns()
     for number in range(1100):
         handed(listeners["/a"], 7120 + number + 50 * (number > 1050), arrived, wire(1.0))
-    inside.attend(lambda looks: True)
-    assert inside.end() == 3
+    within.attend(lambda looks: True)
+    assert within.end() == 3
     final = json.loads((tmp_path / "verdicts.jsonl").read_text(encoding="utf-8").splitlines()[-1])
     assert final["properties"][0]["lost_messages"] == {"/a": None}
     assert final["properties"][0]["lost_at_least"] == {"/a": 50}
@@ -138,7 +132,7 @@ def test_a_gap_and_a_doubt_add_up_to_no_number(watch: Callable[..., Any], tmp_pa
 def test_a_diagnosis_that_took_long_is_not_made_again_at_once(
     watch: Callable[..., Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    _, inside, _ = watch()
+    _, within, _ = watch()
     made: list[float] = []
     now = time.monotonic()
     monkeypatch.setattr(time, "monotonic", lambda: now)
@@ -148,13 +142,13 @@ def test_a_diagnosis_that_took_long_is_not_made_again_at_once(
         made.append(now)
         now += 0.05
 
-    inside._diagnose = diagnose
+    within._diagnose = diagnose
     for _ in range(3):
-        inside._next_diagnosis = 0.0  # as where a verdict has changed
-        inside.keep_house()
+        within._next_diagnosis = 0.0  # as where a verdict has changed
+        within.keep_house()
     assert len(made) == 1
-    assert inside._rested == pytest.approx(made[0] + 0.05 + 0.5)
-    now = inside._rested
-    inside.keep_house()
+    assert within._rested == pytest.approx(made[0] + 0.05 + 0.5)
+    now = within._rested
+    within.keep_house()
     assert len(made) == 2
-    inside.end()
+    within.end()

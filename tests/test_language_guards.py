@@ -174,13 +174,13 @@ def test_a_condition_after_a_fallback_is_what_it_is_once_that_has_been_sent() ->
             assert truth(condition, now) == truth(atom.condition, then)
 
 
-def test_a_file_with_a_guard_is_not_built_and_nothing_is_written(
+def test_a_file_with_a_guard_is_not_built_for_a_target_without_and_nothing_is_written(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(tmp_path)
     (tmp_path / "p.txt").write_text(f"{GUARD}{SPEED}never speed > 1", encoding="utf-8")
     assert main(["build", "p.txt", "-t", "python"]) == 2
-    assert "guards are not emitted yet" in capsys.readouterr().err
+    assert "the target `python` has no guards" in capsys.readouterr().err
     assert [path.name for path in tmp_path.iterdir()] == ["p.txt"]
 
 

@@ -10,6 +10,7 @@ from collections.abc import Sequence
 
 from ltlc.backends.inputs import require_whole_runs
 from ltlc.compiler import Compiled
+from ltlc.program.guards import GuardProgram
 from ltlc.specification.specification import Specification
 
 FILE_NAMES = {
@@ -29,13 +30,16 @@ JUDGE_EACH = ("ros2", "ament", "rust")
 """The targets that judge a property for each id; Rust itself refuses those for which a table is not all they need."""
 
 
-GUARDED = ("c",)
+GUARDED = ("ros2", "ament", "c")
 """The targets of code that have guards."""
 
 
-def emit(target: str, compiled: Sequence[Compiled], specification: Specification) -> str:
-    """The text of the output for one of the targets other than C. Raises NotInTargetError."""
+def emit(
+    target: str, compiled: Sequence[Compiled], specification: Specification, guards: Sequence[GuardProgram] = ()
+) -> str:
+    """The text of the output for one of the targets other than C, with `guards`. Raises NotInTargetError."""
     if target not in JUDGE_EACH:
         require_whole_runs(compiled)
-    text: str = importlib.import_module(f"ltlc.backends.{target}").emit(compiled, specification)
+    of_guards = (guards,) if guards else ()
+    text: str = importlib.import_module(f"ltlc.backends.{target}").emit(compiled, specification, *of_guards)
     return text

@@ -35,16 +35,24 @@ class Watched(Protocol):
     is_blind: bool
 
     @property
-    def is_silent(self) -> bool: ...  # noqa: D102
+    def is_silent(self) -> bool:
+        """See above."""
+        ...
 
     @property
-    def has_begun(self) -> bool: ...  # noqa: D102
+    def has_begun(self) -> bool:
+        """See above."""
+        ...
 
     @property
-    def violated(self) -> tuple[str, bool] | None: ...  # noqa: D102
+    def violated(self) -> tuple[str, bool] | None:
+        """See above."""
+        ...
 
     @property
-    def rests(self) -> bool: ...  # noqa: D102
+    def rests(self) -> bool:
+        """See above."""
+        ...
 
     def fork(self) -> Watched:
         """The same, to go on by itself."""

@@ -9,7 +9,7 @@ from dataclasses import replace
 from typing import Any
 
 from ltlc.assurance.reading.differences import difference
-from ltlc.assurance.reading.guards import require_guards
+from ltlc.assurance.reading.guards import require_guarded_topics, require_guards
 from ltlc.assurance.reading.machines import machine_in
 from ltlc.assurance.reading.names import recalls
 from ltlc.assurance.reading.outcomes import Difference, ReadBack
@@ -227,6 +227,7 @@ def _of_node(
             match said.get("properties"):
                 case ast.Tuple(elts) if len(elts) == len(machines):
                     require_guards(file, said.get("guards"), guards)
+                    require_guarded_topics(file, guards)
                     require_signals(file, said.get("signals"), (s for each in specifications for s in each.signals()))
                     return [_of_property(file, *each) for each in zip(elts, machines, specifications, strict=True)]
         case _:

@@ -12,6 +12,7 @@ from ltlc.assurance.reading.trees import NotUnderstoodError
 from ltlc.program.expressions import Expression
 from ltlc.program.guards import GuardProgram
 from ltlc.program.lowering import read
+from ltlc.specification.guards import Fallback
 
 
 def require_guards(file: PythonFile, said: ast.expr | None, programs: Sequence[GuardProgram]) -> None:
@@ -29,6 +30,23 @@ def require_guards(file: PythonFile, said: ast.expr | None, programs: Sequence[G
         if {name: _data(value) for name, value in of.items()} != _right(program):
             raise NotUnderstoodError(f"the guard of {program.guards[0].out} is not as it was lowered")
         _require_conditions(file, conditions, program)
+
+
+def require_guarded_topics(file: PythonFile, programs: Sequence[GuardProgram]) -> None:
+    """Raise NotUnderstoodError unless `topics_to_guard` says where commands come from, and what may be sent instead."""
+    guards = [guard for program in programs for guard in program.guards]
+    right = tuple(("GuardedTopic", guard.raw, guard.out, tuple(map(_fallback, guard.fallbacks))) for guard in guards)
+    match file.names.only("topics_to_guard"):
+        case ast.FunctionDef(body=[ast.Expr(ast.Constant(str())), ast.Return(ast.expr() as said)]) if (
+            data(said) == right
+        ):
+            return
+        case _:
+            raise NotUnderstoodError("`topics_to_guard` does not name the topics and fallbacks of the guards")
+
+
+def _fallback(fallback: Fallback) -> tuple[Any, ...]:
+    return "Fallback", fallback.name, tuple((path, constant.value) for path, constant in fallback.values.items())
 
 
 def _right(program: GuardProgram) -> dict[str, Any]:

@@ -14,15 +14,18 @@ from pathlib import PurePath
 from typing import Any
 
 from ltlc.backends.ament.metadata import Metadata
+from ltlc.backends.names import Names, variable
 from ltlc.backends.ros2 import context, node, node_name
 from ltlc.backends.ros2.inline import Import, import_lines, module_text
 from ltlc.backends.ros2.readers import read_topics
 from ltlc.backends.templates import template
 from ltlc.compiler import Compiled
+from ltlc.program.guards import GuardProgram
 from ltlc.runtime import MODULES
+from ltlc.specification.guards import Guard
 from ltlc.specification.specification import Specification
 
-OWN_NAMES = frozenset({"INFINITY", "PROVENANCE", "topics_to_read"})
+OWN_NAMES = frozenset({"INFINITY", "PROVENANCE", "topics_to_guard", "topics_to_read"})
 """Names of the module of the properties; those made from a specification must not hide them."""
 
 ROS_PACKAGES = ("diagnostic_msgs", "rcl_interfaces", "rclpy", "std_msgs")
@@ -35,7 +38,11 @@ def package_name(stem: str) -> str:
 
 
 def emit(
-    compiled: Sequence[Compiled], specification: Specification, runs: Sequence[Any], metadata: Metadata
+    compiled: Sequence[Compiled],
+    specification: Specification,
+    runs: Sequence[Any],
+    metadata: Metadata,
+    guards: Sequence[GuardProgram] = (),
 ) -> dict[str, str]:
     """The files of the package, by their paths in it.
 
@@ -45,14 +52,19 @@ def emit(
     stem = PurePath(specification.source.name).stem
     package = package_name(stem)
     topics = read_topics(compiled)
+    guarded = _guarded(specification.guards)
+    namespaced = {t.name for t in topics if t.name.startswith("/")}.difference(topic for _, topic, _ in guarded)
     messages = sorted({topic.message.split("/")[0] for topic in topics})
-    told = context(compiled, specification, OWN_NAMES)
+    told = context(compiled, specification, OWN_NAMES, guards)
     has_numbers = "INFINITY" in told["plan"]
-    code = "\n".join([told["plan"], *told["readers"], told["topics_to_read"], "Any", "math" * has_numbers])
+    code = "\n".join(
+        [told["plan"], *told["readers"], told["topics_to_read"], told["topics_to_guard"], "Any", "math" * has_numbers]
+    )
     about = told | {
         "package": package,
         "node": node_name(stem),
-        "topics": [topic.name for topic in topics if topic.name.startswith("/")],
+        "topics": [topic.name for topic in topics if topic.name in namespaced],
+        "guarded": guarded,
         "packages": sorted({*ROS_PACKAGES, *messages}),
         "metadata": metadata,
         "has_numbers": has_numbers,
@@ -89,6 +101,13 @@ def _templates(package: str) -> dict[str, str]:
         "test.py.jinja": f"test/test_{package}.py",
         "recordings.md.jinja": "test/recordings/README.md",
     }
+
+
+def _guarded(guards: Sequence[Guard]) -> list[tuple[str, str, str]]:
+    """The arguments of a launch file for the topics of guards: a name, the topic, and what it is."""
+    names = Names(frozenset({"robot", "parameters", "use_sim_time"}))
+    topics = [pair for guard in guards for pair in ((guard.raw, "come in"), (guard.out, "leave"))]
+    return [(names.unique(variable(topic)), topic, what) for topic, what in topics]
 
 
 def _lines_of(runs: Sequence[Sequence[Any]]) -> str:

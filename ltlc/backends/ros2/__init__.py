@@ -14,6 +14,7 @@ from ltlc.backends.python import overview
 from ltlc.backends.python.code import literal
 from ltlc.backends.python.plan import plan_code
 from ltlc.backends.ros2 import node
+from ltlc.backends.ros2.guarded import guarded_code
 from ltlc.backends.ros2.inline import Import, inline
 from ltlc.backends.ros2.readers import read_topics, topics_code
 from ltlc.backends.templates import template
@@ -24,7 +25,7 @@ from ltlc.program.guards import GuardProgram
 from ltlc.runtime import MODULES
 from ltlc.specification.specification import MOST_IDS, Specification
 
-OWN_NAMES = frozenset({"INFINITY", "PROVENANCE", "main", "monitor", "import_ros", "topics_to_read"})
+OWN_NAMES = frozenset({"INFINITY", "PROVENANCE", "main", "monitor", "import_ros", "topics_to_guard", "topics_to_read"})
 """Names of the template; those made from a specification must not hide them."""
 
 
@@ -58,6 +59,7 @@ def context(
         "plan": plan_code(compiled, specification, taken=taken, most_ids=MOST_IDS, guards=guards).rstrip("\n"),
         "readers": readers,
         "topics_to_read": "\n".join(topics),
+        "topics_to_guard": "\n".join(guarded_code([guard for each in guards for guard in each.guards])),
         "provenance": _literal(provenance([source])),
     }
 

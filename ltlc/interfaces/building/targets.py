@@ -121,14 +121,14 @@ class _Text:
         guards: Sequence[GuardProgram] = (),
     ) -> Made:
         try:
-            text = backends.emit(self.name, compiled, specification)
+            text = backends.emit(self.name, compiled, specification, guards)
         except NotInTargetError:
             emit = partial(backends.emit, self.name)
             raise UnfitError(
                 _unfit(_NODE if self.name == "ros2" else self.name.capitalize(), emit, specification, compiled)
             ) from None
         read = (
-            written(text, [each.machine for each in compiled], [each.specification for each in compiled])
+            written(text, [each.machine for each in compiled], [each.specification for each in compiled], guards)
             if self.name in READABLE
             else None
         )
@@ -294,7 +294,7 @@ class _Package:
         def files() -> Mapping[Path, str]:
             monitored = [each for each in node.programs or () if isinstance(each, Monitored)]
             runs = told_runs(compiled, monitored, messages)
-            made = ament.emit(compiled, specification, runs, self.metadata)
+            made = ament.emit(compiled, specification, runs, self.metadata, guards)
             return {self.path / name: text for name, text in made.items()}
 
         return Made(node.programs, node.written, files)

@@ -9,9 +9,9 @@ from ltlc.base.render.table import aligned
 from ltlc.monitoring.campaigns.outcomes import Outcome, PropertyOutcome
 from ltlc.monitoring.campaigns.places import Found
 from ltlc.monitoring.campaigns.tally import Result, Tally, brief
-from ltlc.monitoring.guarding.report import sentence
 from ltlc.monitoring.judging.run import unread_case, warnings
 from ltlc.runtime import junit, reports
+from ltlc.runtime.guard_reports import counts_text
 from ltlc.semantics.durations import Nanoseconds
 
 
@@ -37,7 +37,7 @@ class Text:
         """The recording's line and errors."""
         errors = [_placed(each.figure, outcome.place.name) for each in outcome.properties if each.figure]
         self._has_blank_line = bool(errors)
-        guards = [f"  {sentence(out, counts)}" for out, counts in outcome.guards.items()]
+        guards = [f"  {counts_text(out, counts)}" for out, counts in outcome.guards.items()]
         return "\n".join([brief(outcome), *guards, *errors]) + "\n"
 
     def end(self, tally: Tally, found: Found) -> str:

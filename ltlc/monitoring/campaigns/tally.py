@@ -8,8 +8,8 @@ from enum import Enum
 
 from ltlc.dataclass import dataclass
 from ltlc.monitoring.campaigns.outcomes import Outcome, PropertyOutcome
-from ltlc.monitoring.guarding.report import sentence
 from ltlc.runtime import reports
+from ltlc.runtime.guard_reports import counts_text
 from ltlc.runtime.guarding import Action
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.verdicts import Verdict
@@ -135,7 +135,7 @@ class Tally:
     def guard_sentences(self) -> list[str]:
         """What the guards did in all recordings, a line for each."""
         return [
-            sentence(out, counts, f"it lost {reports.counted(counts[Action.LOST], 'time')}")
+            counts_text(out, counts, f"it lost {reports.counted(counts[Action.LOST], 'time')}")
             for out, counts in self.guards.items()
         ]
 

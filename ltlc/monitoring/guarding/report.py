@@ -6,24 +6,14 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from ltlc.dataclass import dataclass
-from ltlc.runtime.documents import json_value
-from ltlc.runtime.guarding import Action, Deed, Values
+from ltlc.runtime.guard_reports import counts_text, deed_report, deed_text
+from ltlc.runtime.guarding import Action, Deed
 from ltlc.runtime.plays import Play
-from ltlc.runtime.reports import value_text
 from ltlc.runtime.session import Session
-from ltlc.runtime.times import seconds
 from ltlc.specification.guards import Guard
 
 MOST_LINES = 10
 """So many deeds of a guard are listed unless all are wanted."""
-
-WORDS = {
-    Action.PASSED: "passed",
-    Action.CHANGED: "changed",
-    Action.HELD: "held back",
-    Action.SENT: "sent by itself",
-    Action.LOST: "lost",
-}
 
 
 class Done(NamedTuple):
@@ -50,12 +40,6 @@ class Done(NamedTuple):
                 return f"{violation} could no longer be avoided after it: {moves}"
 
 
-def sentence(out: str, counts: Mapping[Action, int], lost: str = "it lost") -> str:
-    """How often the guard that sends on `out` did what; `lost` says that it lost, if it did."""
-    shown = (f"{counts[action]:,} {WORDS[action]}" for action in Action if action is not Action.LOST)
-    return f"guard of {out}: {', '.join(shown)}{f'; {lost}' if counts[Action.LOST] else ''}"
-
-
 @dataclass(frozen=True)
 class GuardReport:
     """What `guards` have `done` in one run, in the order of time.
@@ -80,14 +64,13 @@ class GuardReport:
 
     def _lines(self, guard: Guard, session: Session, with_all: bool, whole: bool) -> Iterator[str]:
         own = self.of(guard)
-        yield sentence(guard.out, {action: sum(each.deed.action is action for each in own) for action in Action})
+        yield counts_text(guard.out, {action: sum(each.deed.action is action for each in own) for action in Action})
         if self.is_unguarded:
             yield f"  {guard.raw} was not recorded: what was recorded on {guard.out} is taken for its commands"
         acted = [each for each in own if each.deed.action is not Action.PASSED]
         listed = acted if with_all else acted[:MOST_LINES]
         for each in listed:
-            said = f"{WORDS[each.deed.action]}{subject(each.deed)}"
-            yield f"  {session.scale.text(each.deed.time)}  {said}: {each.reason(whole=whole)}"
+            yield f"  {session.scale.text(each.deed.time)}  {deed_text(each.deed)}: {each.reason(whole=whole)}"
         if len(listed) < len(acted):
             yield f"  and {len(acted) - len(listed):,} more: `--all` lists them"
 
@@ -106,31 +89,9 @@ class GuardReport:
         return {"raw": guard.raw, "out": guard.out, "commands_from": commands, **listed}
 
 
-def subject(deed: Deed) -> str:
-    """What was asked for, and what left instead."""
-    command = "" if deed.command is None else f" {_text(deed.command)}"
-    if deed.message is None:
-        return command
-    return f"{command} to `{deed.message}`" if command else f" `{deed.message}`"
-
-
-def _text(values: Values) -> str:
-    return ", ".join(f"{name} = {value_text(value)}" for name, value in values.items()) or "a message"
-
-
 def _report(done: Done, session: Session) -> dict[str, Any]:
-    deed, zero = done.deed, session.beginning
     return {
-        "time": seconds(deed.time),
-        "time_ns": deed.time,
-        **({} if zero is None else {"offset": seconds(deed.time - zero)}),
-        "command": _json(deed.command),
-        "sent": _json(deed.values),
-        "message": deed.message,
+        **deed_report(done.deed, session.beginning),
         "reason": done.reason(),
         "play": None if done.play is None else done.play.document(),
     }
-
-
-def _json(values: Values | None) -> dict[str, Any] | None:
-    return None if values is None else {name: json_value(value) for name, value in values.items()}

@@ -35,8 +35,9 @@ from rosbags.typesys.store import Typestore  # noqa: TID251
 from ltlc import __version__
 from ltlc.inputs.recordings.trails import Trail
 from ltlc.monitoring.guarding.fallbacks import data_of
-from ltlc.monitoring.guarding.report import WORDS, GuardReport, subject
+from ltlc.monitoring.guarding.report import GuardReport
 from ltlc.monitoring.judging.run import RunReport
+from ltlc.runtime.guard_reports import deed_text
 from ltlc.runtime.guarding import Action
 from ltlc.runtime.reports import explanation, moment_text, printable, topic_names, value_text
 from ltlc.runtime.session import Session
@@ -122,7 +123,7 @@ def _guarded(report: GuardReport, guard: Guard, name: str) -> Iterator[_Message]
             yield _Message(deed.time, guard.out, guard.message, Whole(left, definition))
         yield _Message(deed.time, f"{name}/action", "std_msgs/msg/String", {"data": deed.action.value})
         level = {Action.PASSED: 0, Action.LOST: 2}.get(deed.action, 1)
-        said = f"{WORDS[deed.action]}{subject(deed)}{f': {reason}' if (reason := done.reason(whole=True)) else ''}"
+        said = f"{deed_text(deed)}{f': {reason}' if (reason := done.reason(whole=True)) else ''}"
         yield _status(deed.time, level, f"guard of {guard.out}", said, ())
 
 

@@ -14,6 +14,8 @@ MODULES = (
     "ltlc.backends.ros2.node.wire",
     "ltlc.backends.ros2.node.intake",
     "ltlc.backends.ros2.node.clock",
+    "ltlc.backends.ros2.node.commands",
+    "ltlc.backends.ros2.node.deeds",
     "ltlc.backends.ros2.node.recorder",
     "ltlc.backends.ros2.node.outlets",
     "ltlc.backends.ros2.node.definitions",

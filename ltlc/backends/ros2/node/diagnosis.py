@@ -10,6 +10,7 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from rclpy.node import Node
 from rclpy.serialization import serialize_message
 
+from ltlc.backends.ros2.node.deeds import Deeds
 from ltlc.backends.ros2.node.intake import Listener
 from ltlc.runtime.junit import provenance_pairs
 from ltlc.runtime.reports import explanation, printable
@@ -22,8 +23,8 @@ from ltlc.semantics.verdicts import Verdict
 class Diagnosis:
     """Publishes the state of the properties on /diagnostics."""
 
-    def __init__(self, node: Node, provenance: Mapping[str, Any]) -> None:
-        self._node = node
+    def __init__(self, node: Node, provenance: Mapping[str, Any], deeds: Deeds) -> None:
+        self._node, self._deeds = node, deeds
         self._made_of = [
             KeyValue(key=name, value=printable(value))
             for name, value in provenance_pairs(provenance)
@@ -48,15 +49,24 @@ class Diagnosis:
         return echo
 
     def publish(
-        self, session: Session, listeners: Sequence[Listener], remarks: Sequence[str]
+        self,
+        session: Session,
+        listeners: Sequence[Listener],
+        remarks: Sequence[str],
+        of_guards: Sequence[str],
     ) -> None:
-        """One status, `node: property`, for each property; `remarks` go to all."""
+        """One status, `node: property`, for each property; `remarks` go to all.
+
+        Also one for each guard, with the remarks `of_guards`.
+        """
         by_topic = {one.topic.name: one for one in listeners}
         array = DiagnosticArray()
         array.header.stamp = self._node.get_clock().now().to_msg()
         array.status = [
             self._status(session, track, by_topic, remarks) for track in session.tracks
         ]
+        name = self._node.get_fully_qualified_name()
+        array.status += self._deeds.statuses(name, [*remarks, *of_guards])
         data = serialize_message(array)
         for echo in self._echoes:
             echo.append(data)
@@ -69,7 +79,8 @@ class Diagnosis:
         listeners: Mapping[str, Listener],
         general: Sequence[str],
     ) -> DiagnosticStatus:
-        heard = [listeners[topic] for topic in sorted(topics(session, track))]
+        read = topics(session, track)
+        heard = [listeners[topic] for topic in sorted(read & listeners.keys())]
         remarks = [*general, *(remark for one in heard for remark in one.remarks)]
         verdict = track.verdict.value.replace("_", " ")
         ids: dict[str, str] = {}

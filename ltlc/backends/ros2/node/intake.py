@@ -88,6 +88,8 @@ class Listener:
     """
 
     DEPTH = 1000
+    TAKES_KEPT = True
+    """Whether it takes what publishers have kept for newcomers."""
 
     __signature__ = Signature(
         [Parameter(name, Parameter.POSITIONAL_ONLY) for name in ("message", "info")]
@@ -213,7 +215,7 @@ class Listener:
             reliability = ReliabilityPolicy.BEST_EFFORT
         if any(o.durability != DurabilityPolicy.TRANSIENT_LOCAL for o in offers):
             durability = DurabilityPolicy.VOLATILE
-        elif heard == 0:
+        elif heard == 0 and self.TAKES_KEPT:
             durability = DurabilityPolicy.TRANSIENT_LOCAL
         if (reliability, durability) != (self._reliability, self._durability):
             self._reliability, self._durability = reliability, durability

@@ -22,7 +22,7 @@ from rclpy.utilities import remove_ros_args, try_shutdown
 
 from ltlc.backends.ros2.node.files import UnusableError
 from ltlc.backends.ros2.node.options import read_options
-from ltlc.backends.ros2.node.topics import Topic
+from ltlc.backends.ros2.node.topics import GuardedTopic, Topic
 from ltlc.backends.ros2.node.watch import LetIn, Watch
 from ltlc.backends.ros2.node.watchdog import UNUSABLE, Pulse
 from ltlc.runtime.session import Plan
@@ -33,6 +33,7 @@ def run_node(
     name: str,
     plan: Plan,
     topics: Sequence[Topic],
+    guarded: Sequence[GuardedTopic],
     provenance: Mapping[str, Any],
     about: str,
     import_ros: Callable[[], None],
@@ -62,7 +63,7 @@ def run_node(
         rclpy.init(args=sys.argv, signal_handler_options=SignalHandlerOptions.NO)
         node = Node(name, automatically_declare_parameters_from_overrides=True)
         options = read_options(node, plan)
-        watch = Watch(node, plan, topics, options, provenance, pulse)
+        watch = Watch(node, plan, topics, guarded, options, provenance, pulse)
         code = watched(stop, node, watch)
         node.destroy_node()  # else the middleware leaves files in /dev/shm
         return code
@@ -88,6 +89,9 @@ def watched(stop: threading.Event, node: Node, watch: Watch) -> int:
     """Watch until it ends or breaks, and report the verdicts; the exit code."""
     try:
         watch_until(stop, node, watch)
+    except UnusableError as error:
+        print(f"{node.get_name()}: {error}", file=sys.stderr)
+        return UNUSABLE
     except Exception:  # noqa: BLE001
         watch.fail(traceback.format_exc())
     return watch.end()

@@ -11,10 +11,12 @@ from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from std_msgs.msg import String
 
+from ltlc.backends.ros2.node.deeds import Deeds
 from ltlc.backends.ros2.node.files import Lines, test_suites, write_text
 from ltlc.backends.ros2.node.options import Options
 from ltlc.backends.ros2.node.recorder import Recorder
 from ltlc.runtime.documents import document, json_line
+from ltlc.runtime.guarding import Deed
 from ltlc.runtime.junit import junit, provenance_pairs
 from ltlc.runtime.properties import Change
 from ltlc.runtime.reports import summary
@@ -28,9 +30,13 @@ class Outlets:
     KEPT = 1000
 
     def __init__(
-        self, node: Node, options: Options, provenance: Mapping[str, Any]
+        self,
+        node: Node,
+        options: Options,
+        provenance: Mapping[str, Any],
+        deeds: Deeds,
     ) -> None:
-        self._node = node
+        self._node, self._deeds = node, deeds
         self._provenance = provenance
         self._suites: list[str] = []
         self._options = options
@@ -49,17 +55,23 @@ class Outlets:
 
     def record(self, time: int, samples: Iterable[tuple[str, Value]] = ()) -> None:
         """Samples of `time` are judged; what cannot be recorded ends the recording."""
-        if self._recorder and not self._guard(self._recorder.write, time, samples):
+        if self._recorder and not self._try(self._recorder.write, time, samples):
             self._recorder = None
 
     def save(self) -> None:
         """Let others see what has been recorded so far."""
-        if self._recorder and not self._guard(self._recorder.save):
+        if self._recorder and not self._try(self._recorder.save):
             self._recorder = None
 
     def tell(self, change: Change) -> None:
         """A verdict has changed."""
         self.line(json_line(change))
+
+    def deed(self, deed: Deed, session: Session) -> None:
+        """A guard did something."""
+        line = self._deeds.add(deed, session)
+        if line is not None and self._lines is not None:
+            self._try(self._lines.write, line)
 
     def end(self, session: Session) -> None:
         """A run has ended; `session` has its final verdicts."""
@@ -67,9 +79,9 @@ class Outlets:
         self.line(json.dumps(final))
         self._suites = suites
         if self._options.junit is not None:
-            self._guard(write_text, self._options.junit, test_suites(suites))
+            self._try(write_text, self._options.junit, test_suites(suites))
         if self._recorder is not None:
-            self._guard(self._recorder.end, session.time)
+            self._try(self._recorder.end, session.time)
 
     def words(self, session: Session) -> dict[str, Any]:
         """What the watchdog reports if the node cannot, as data."""
@@ -79,7 +91,7 @@ class Outlets:
             "junit": None if junit is None else str(junit),
             "final": self._final(session),
             "suites": test_suites(self._with(session)),
-            "summary": summary(session),
+            "summary": summary(session) + self._deeds.text,
         }
 
     def _final(self, session: Session) -> dict[str, Any]:
@@ -88,7 +100,8 @@ class Outlets:
         data = document(name, session)
         run = len(self._suites) + 1
         head = {"run": run, "final": True, "node": data.pop("recording")}
-        return {**head, **data, "provenance": self._provenance}
+        guards = self._deeds.document(session)
+        return {**head, **data, **guards, "provenance": self._provenance}
 
     def _with(self, session: Session) -> list[str]:
         """A JUnit report of each run that has ended, and of `session`."""
@@ -106,9 +119,9 @@ class Outlets:
         """Something is to be known at once, as a line of JSON."""
         self._publisher.publish(String(data=line))
         if self._lines is not None:
-            self._guard(self._lines.write, line)
+            self._try(self._lines.write, line)
 
-    def _guard(self, write: Any, *arguments: Any) -> bool:
+    def _try(self, write: Any, *arguments: Any) -> bool:
         """A full disk does not end the run: it is reported, also by the exit code."""
         try:
             write(*arguments)

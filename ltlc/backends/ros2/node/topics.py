@@ -1,4 +1,4 @@
-"""The topics that a node reads, and how entries are found in their messages."""
+"""The topics that a node reads and sends on, and how entries of messages are found."""
 
 from __future__ import annotations
 
@@ -22,6 +22,23 @@ class Topic:
     message: str
     read: Callable[[Any], Sequence[Value]]
     paths: tuple[tuple[str, ...], ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Fallback:
+    """A message that a guard may send: values of `fields`, the rest zero or empty."""
+
+    name: str
+    fields: tuple[tuple[tuple[str, ...], Value], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class GuardedTopic:
+    """A topic `out` that a guard sends on; commands for it come on `raw`."""
+
+    raw: str
+    out: str
+    fallbacks: tuple[Fallback, ...]
 
 
 def entry(messages: Any, key: str, value: str) -> Any:

@@ -11,6 +11,8 @@ from typing import Any
 from rclpy.node import Node
 
 from ltlc.backends.ros2.node.clock import RosTime
+from ltlc.backends.ros2.node.commands import Commands
+from ltlc.backends.ros2.node.deeds import Deeds
 from ltlc.backends.ros2.node.diagnosis import Diagnosis
 from ltlc.backends.ros2.node.extracts import Extracts
 from ltlc.backends.ros2.node.intake import Listener
@@ -18,8 +20,9 @@ from ltlc.backends.ros2.node.locks import Locks
 from ltlc.backends.ros2.node.options import Options
 from ltlc.backends.ros2.node.outlets import Outlets
 from ltlc.backends.ros2.node.snapshot import Snapshot
-from ltlc.backends.ros2.node.topics import Topic
+from ltlc.backends.ros2.node.topics import GuardedTopic, Topic
 from ltlc.backends.ros2.node.watchdog import UNUSABLE, Pulse
+from ltlc.runtime.guarding import Deed, Values
 from ltlc.runtime.properties import Change
 from ltlc.runtime.reports import counted, exit_code, figure, sentence, summary
 from ltlc.runtime.rows import ByRows
@@ -30,7 +33,7 @@ from ltlc.runtime.times import SECOND, Times, duration, seconds_text
 from ltlc.runtime.tracking import Track
 from ltlc.semantics.verdicts import Verdict
 
-Message = tuple[int, int, str, Sequence[Value] | None]
+Arrival = tuple[int, int, str, Sequence[Value] | None]
 """The time to judge it by, when it was received, its topic, and what it says.
 
 None is what a malformed message says.
@@ -68,6 +71,7 @@ class Watch:
         node: Node,
         plan: Plan,
         topics: Sequence[Topic],
+        guarded: Sequence[GuardedTopic],
         options: Options,
         provenance: Mapping[str, Any],
         pulse: Pulse,
@@ -81,15 +85,23 @@ class Watch:
         self._plan = replace(plan, rate=options.rate, timeout=timeout)
         self._ends_on_violation = options.ends_on_violation
         self._verdicts: list[Verdict] = []
-        self._waiting: list[Message] = []
-        self._outlets = Outlets(node, options, provenance)
-        self._diagnosis = Diagnosis(node, provenance)
+        self._waiting: list[Arrival] = []
+        self._deeds = Deeds(node, guarded)
+        self._outlets = Outlets(node, options, provenance, self._deeds)
+        self._diagnosis = Diagnosis(node, provenance, self._deeds)
         self._locks = Locks(node, [each.label for each in plan.properties])
         service = options.snapshot
         self._snapshot = Snapshot(node, service) if service else None
+        sent = {each.out for each in guarded}
         self._listeners = [
-            Listener(node, topic, self._receive, self._lose) for topic in topics
+            Listener(node, topic, self._receive, self._lose)
+            for topic in topics
+            if topic.name not in sent
         ]
+        by_name = {each.name: each for each in topics}
+        self._commands = Commands(
+            node, self._plan, guarded, by_name, self._samples, self._note
+        )
         for listener in self._listeners:
             if listener.full_name == self._diagnosis.full_name:
                 listener.own = self._diagnosis.echo()
@@ -109,15 +121,18 @@ class Watch:
         self._news = set[str]().union(
             *(news(self._session, track) for track in self._session.tracks)
         )
+        guards = "".join(f", guarding {each.out}" for each in guarded)
         self._node.get_logger().info(
             f"watching {counted(len(plan.properties), 'property', 'properties')} "
-            f"on {counted(len(topics), 'topic')}"
+            f"on {counted(len(topics), 'topic')}{guards}"
         )
 
     def _new_session(self) -> None:
         """A run is to begin, with the messages that wait."""
         self._has_begun = False
         self._due: int | None = None
+        self._commands.end_run()
+        self._deeds.begin()
         self._session = Session(self._plan)
         self._session.times = Times.BOTH
         self._tracks = {id(track.property): track for track in self._session.tracks}
@@ -145,8 +160,11 @@ class Watch:
     def patience(self) -> float:
         """How long to wait for a message, in s of a monotonic clock."""
         wait = self._next_housekeeping - time.monotonic()
-        if self._due is not None and not self._clock.is_simulated:
-            wait = min(wait, (self._due - self._clock.surely()) / SECOND)
+        if not self._clock.is_simulated:
+            if self._due is not None:
+                wait = min(wait, (self._due - self._clock.surely()) / SECOND)
+            if (due := self._commands.due()) is not None:
+                wait = min(wait, (due - self._clock.now()) / SECOND)
         return max(wait, 0.0)
 
     def attend(self, let_in: LetIn) -> None:
@@ -157,8 +175,11 @@ class Watch:
         """
         self._pulse.beat()
         is_time = time.monotonic() >= self._next_housekeeping
-        if is_time or (self._due is not None and self._due <= self._clock.surely()):
+        if is_time or self._is_due():
             self.catch_up(let_in)
+        elif self._commands.are_waiting:
+            let_in(1)
+            self._judge(self._clock.now())
         elif self._waiting:
             if time.time_ns() - self._waiting[0][1] > self.BACKLOG:
                 let_in(1)
@@ -168,6 +189,13 @@ class Watch:
         if is_time:
             self._next_housekeeping = time.monotonic() + self.HOUSEKEEPING
             self.keep_house()
+
+    def _is_due(self) -> bool:
+        """Whether time alone has decided something."""
+        due = self._commands.due()
+        if due is not None and due <= self._clock.now():
+            return True
+        return self._due is not None and self._due <= self._clock.surely()
 
     def catch_up(self, let_in: LetIn) -> bool:
         """Judge all that has been received, then what the time brings; if it is all."""
@@ -186,37 +214,61 @@ class Watch:
         if self._session.time is not None and now < self._session.time:
             self._begin_anew(self._session.time, now)
         if not self._has_begun and not self._begin(now):
+            self._commands.let_through(now)
             return
         waiting, self._waiting = self._waiting, []
         if len(waiting) > 1:
             waiting.sort(key=itemgetter(0, 1))
+        self._commands.act(now)
         for time_, _, topic, values in waiting:
             self._pulse.beat()
             at = min(max(time_ or now, self._session.time or 0), now)
-            if values is not None and self._outlets.are_recording:
-                self._record(at, topic, values)
-            changes = self._rows.judge(at, topic, values)
-            if changes:
-                self._tell(changes)
+            if self._commands.ways:  # a run of guards is theirs, by when they take
+                at = now
+            self._take(at, topic, values)
+            if self._commands.ways:
+                self._commands.hear(at, topic, self._samples(topic, values))
+        self._commands.let_through(now)
 
-    def _record(self, time_: int, topic: str, values: Sequence[Value]) -> None:
-        """Let a recording have what is judged."""
-        names = self._session.fields[topic]
-        taken = self._session.sampler.converted(names, values)
-        self._outlets.record(time_, taken.items())
+    def _take(self, at: int, topic: str, values: Sequence[Value] | None) -> None:
+        """Judge a message; None is what a malformed one says."""
+        if values is not None and self._outlets.are_recording:
+            self._outlets.record(at, self._samples(topic, values).items())
+        changes = self._rows.judge(at, topic, values)
+        if changes:
+            self._tell(changes)
+
+    def _note(self, deed: Deed) -> None:
+        """A guard did something; what has left it is judged as any other message."""
+        if deed.values is not None:
+            (out,) = deed.outs
+            values = [deed.values.get(name) for name in self._session.fields[out]]
+            self._session.messages[out] += 1
+            self._take(max(deed.time, self._session.time or 0), out, values)
+        self._outlets.deed(deed, self._session)
+
+    def _samples(self, topic: str, values: Sequence[Value] | None) -> Values:
+        """The samples of a message, as they are kept; none of a malformed one."""
+        if values is None:
+            return {}
+        return self._session.sampler.converted(self._session.fields[topic], values)
 
     def _begin(self, now: int) -> bool:
         """Begin a run; False if it is too early, for what it is to be judged by."""
         for _, _, topic, _ in self._waiting[: -self.KEPT]:
             self._lose(topic, 1)
         del self._waiting[: -self.KEPT]
-        heard = all(self._session.messages[topic] for topic in self._news)
+        others = self._news - self._commands.ways.keys()
+        heard = all(self._session.messages[topic] for topic in others)
         if now == 0 or not (heard or time.monotonic() >= self._discovered):
+            return False
+        if not self._commands.are_settled:
             return False
         self._has_begun = True
         if self._news:
             self._outlets.record(now)
             self._tell(self._rows.begin(now))
+        self._commands.begin(now)
         return True
 
     def _begin_anew(self, before: int, now: int) -> None:
@@ -274,6 +326,8 @@ class Watch:
             if is_due or not heard:
                 listener.fit(heard)
                 self._note_misfit(listener)
+        for bypass in self._commands.look(is_due):
+            self._node.get_logger().error(bypass)
         if self._extracts:
             self._extracts.look(is_due)
         if is_due:
@@ -322,16 +376,17 @@ class Watch:
     def _remarks(self) -> list[str]:
         """What is amiss, or may be."""
         heard = [remark for one in self._listeners for remark in one.remarks]
-        return [*self._clock.remarks, *heard]
+        return [*self._clock.remarks, *heard, *self._commands.remarks]
 
     def _diagnose(self) -> None:
-        self._diagnosis.publish(self._session, self._listeners, self._clock.remarks)
+        remarks, of_guards = self._clock.remarks, self._commands.remarks
+        self._diagnosis.publish(self._session, self._listeners, remarks, of_guards)
         self._leave_words()
 
     def _leave_words(self) -> None:
         """Tell the watchdog what to report if the node hangs or dies from now on."""
         verdicts = [*self._verdicts, *(track.verdict for track in self._session.tracks)]
-        is_violated = Verdict.VIOLATED in verdicts
+        is_violated = Verdict.VIOLATED in verdicts or self._commands.have_lost
         words = self._outlets.words(self._session)
         self._pulse.leave({"is_violated": is_violated, **words})
 
@@ -342,7 +397,8 @@ class Watch:
         self._verdicts += [track.verdict for track in self._session.tracks]
         self._is_incomplete |= self._session.is_incomplete
         self._outlets.end(self._session)
-        lines = [summary(self._session).rstrip(), *self._remarks()]
+        found = summary(self._session) + self._deeds.text
+        lines = [found.rstrip(), *self._remarks()]
         self._node.get_logger().info("\n".join(["final verdicts:", *lines]))
 
     def hurry(self) -> None:
@@ -373,9 +429,12 @@ class Watch:
         return code
 
     def _exit_code(self) -> int:
-        is_violated = Verdict.VIOLATED in self._verdicts
+        is_violated = Verdict.VIOLATED in self._verdicts or self._commands.have_lost
         reporters = (self._outlets, self._extracts, self._snapshot)
         have_failed = any(each and each.have_failed for each in reporters)
         if not is_violated and (self._has_failed or have_failed):
             return UNUSABLE
-        return exit_code(self._verdicts, self._is_incomplete)
+        if self._commands.have_lost:
+            return 1
+        is_incomplete = self._is_incomplete or self._commands.is_bypassed
+        return exit_code(self._verdicts, is_incomplete)
