@@ -56,24 +56,26 @@ Section Robustness.
       (greatest_of (fun j => least (neg (outside ended i j))
         (least (at_margins y (v j)) (first_margin (opening x y) ended j k))) i (S k)).
 
-  Fixpoint robustness (p : property) (ended : nat -> margin) (i : nat) : margin :=
+  (** [known]: that instant i is in the segment has been asked, so that it is not asked again. *)
+  Fixpoint robustness (p : property) (ended : nat -> margin) (known : bool) (i : nat) : margin :=
     match p with
-    | Now p => at_margins p (fun a => if i <? n then least (v i a) (neg (ended i)) else Lowest)
+    | Now p => at_margins p (fun a =>
+        if i <? n then if known then v i a else least (v i a) (neg (ended i)) else Lowest)
     | Throughout p => least_of (fun k => greatest (outside ended i k) (at_margins p (v k))) i n
-    | Not p => neg (robustness p ended i)
-    | And p q => least (robustness p ended i) (robustness q ended i)
-    | Or p q => greatest (robustness p ended i) (robustness q ended i)
-    | Implies p q => greatest (neg (robustness p ended i)) (robustness q ended i)
-    | Always p => least_of (fun k => greatest (outside ended i k) (robustness p ended k)) i n
-    | Never p => least_of (fun k => greatest (outside ended i k) (neg (robustness p ended k))) i n
-    | Eventually p => greatest_of (fun k => least (neg (outside ended i k)) (robustness p ended k)) i n
-    | After x p => least_of (fun k => greatest (neg (first_margin x ended i k)) (robustness p ended k)) i n
+    | Not p => neg (robustness p ended known i)
+    | And p q => least (robustness p ended known i) (robustness q ended known i)
+    | Or p q => greatest (robustness p ended known i) (robustness q ended known i)
+    | Implies p q => greatest (neg (robustness p ended known i)) (robustness q ended known i)
+    | Always p => least_of (fun k => greatest (outside ended i k) (robustness p ended true k)) i n
+    | Never p => least_of (fun k => greatest (outside ended i k) (neg (robustness p ended true k))) i n
+    | Eventually p => greatest_of (fun k => least (neg (outside ended i k)) (robustness p ended true k)) i n
+    | After x p => least_of (fun k => greatest (neg (first_margin x ended i k)) (robustness p ended true k)) i n
     | Until x p =>
         least (greatest_of (fun k => least (neg (outside ended i k)) (at_margins x (v k))) i n)
-          (robustness p (ended_by x ended) i)
+          (robustness p (ended_by x ended) false i)
     | AfterUntil x y p =>
-        least_of (fun k => greatest (neg (opens_margin x y ended i k)) (robustness p (ended_by y ended) k)) i n
-    | Within _ d p => robustness p (fun k => if t i + d <? t k then Highest else ended k) i
+        least_of (fun k => greatest (neg (opens_margin x y ended i k)) (robustness p (ended_by y ended) true k)) i n
+    | Within _ d p => robustness p (fun k => if t i + d <? t k then Highest else ended k) known i
     end.
 
   (** The past. An age is decided by times alone. *)
@@ -113,13 +115,15 @@ Proof. intros a b. unfold greatest. cases a b. Qed.
 
 Lemma positive_least_of : forall f i n, positive (least_of f i n) -> forall k, i <= k < n -> positive (f k).
 Proof.
-  intros f i n. unfold least_of. remember (n - i) as m eqn:E. revert i E. induction m as [|m IH]; intros i E H k Hk; [lia|].
+  intros f i n. unfold least_of. remember (n - i) as m eqn:E. revert i E. induction m as [|m IH]; intros i E H k Hk;
+    [lia|].
   simpl in H. apply positive_least in H as [H1 H2].
   destruct (Nat.eq_dec k i) as [->|]; auto. apply (IH (S i)); auto; lia.
 Qed.
 Lemma negative_least_of : forall f i n, negative (least_of f i n) -> exists k, i <= k < n /\ negative (f k).
 Proof.
-  intros f i n. unfold least_of. remember (n - i) as m eqn:E. revert i E. induction m as [|m IH]; intros i E H; [margins|].
+  intros f i n. unfold least_of. remember (n - i) as m eqn:E. revert i E. induction m as [|m IH]; intros i E H;
+    [margins|].
   simpl in H. apply negative_least in H as [H|H]; [exists i; split; auto; lia|].
   destruct (IH (S i)) as (k & Hk & HN); auto; [lia|]. exists k. split; auto; lia.
 Qed.
@@ -142,7 +146,8 @@ Proof.
 Qed.
 Lemma says_or : forall a b (P Q : Prop), says a P -> says b Q -> says (greatest a b) (P \/ Q).
 Proof.
-  intros a b P Q [H1 H2] [H3 H4]. split; intros HS; [apply positive_greatest in HS | apply negative_greatest in HS]; tauto.
+  intros a b P Q [H1 H2] [H3 H4]. split; intros HS; [apply positive_greatest in HS | apply negative_greatest in HS];
+    tauto.
 Qed.
 Lemma says_every : forall f i n (P : nat -> Prop), (forall k, i <= k < n -> says (f k) (P k)) ->
   says (least_of f i n) (forall k, i <= k < n -> P k).
@@ -204,7 +209,8 @@ Section Sound.
 
   Lemma same_stop : forall a b i, i <= a -> i <= b -> (forall k, i <= k -> (k < a <-> k < b)) -> a = b.
   Proof.
-    intros a b i Ha Hb H. destruct (lt_eq_lt_dec a b) as [[L|]|L]; auto; [specialize (H a Ha) | specialize (H b Hb)]; lia.
+    intros a b i Ha Hb H. destruct (lt_eq_lt_dec a b) as [[L|]|L]; auto; [specialize (H a Ha) | specialize (H b Hb)];
+      lia.
   Qed.
 
   Lemma stop_later : forall e i k, i <= k -> k < stop e i -> stop e k = stop e i.
@@ -236,6 +242,9 @@ Section Sound.
     intros m Hm. unfold e'. rewrite B by lia. simpl. destruct (Nat.eq_dec m (stop e' i)) as [->|]; auto. apply HC; lia.
   Qed.
 
+  Lemma stop_inside : forall e i k, i <= k -> inside (Some (stop e i)) k -> k < stop e k.
+  Proof. intros e i k Hk HI. simpl in HI. now rewrite (stop_later e i k). Qed.
+
   (** [ended] says where e is true. *)
   Definition agrees (ended : nat -> margin) (e : nat -> bool) : Prop := forall k, says (ended k) (e k = true).
 
@@ -245,7 +254,8 @@ Section Sound.
   Lemma outside_right : forall ended e i k, agrees ended e -> i <= k < n ->
     says (outside ended i k) (~ inside (Some (stop e i)) k).
   Proof.
-    intros ended e i k HA Hk. eapply says_iff; [apply says_some; intros; apply HA|]. simpl. rewrite before_stop by lia. split.
+    intros ended e i k HA Hk. eapply says_iff; [apply says_some; intros; apply HA|]. simpl.
+    rewrite before_stop by lia. split.
     - intros (m & Hm & Em) [_ H]. rewrite H in Em by lia. discriminate.
     - intros H. destruct (existsb e (seq i (S k - i))) eqn:E.
       + apply existsb_exists in E as (m & Hm & Em). apply in_seq in Hm. exists m. split; auto; lia.
@@ -323,12 +333,25 @@ Section Sound.
       apply Nat.ltb_ge in HN. lia.
   Qed.
 
-  Theorem robustness_right : forall p ended e i, agrees ended e ->
-    says (robustness v t n p ended i) (satisfies p s t (Some (stop e i)) i).
+  Lemma opens_inside : forall x y e i k, i <= k < n -> opens x y s (Some (stop e i)) i k ->
+    k < stop (fun k => e k || at_letter y (s k)) k.
   Proof.
-    induction p; intros ended e i HA; cbn [robustness satisfies].
+    intros x y e i k Hk HO. apply before_stop; auto. split; [lia|]. intros m Hm. replace m with k by lia.
+    assert (HF : at_letter (opening x y) (s k) = true /\ k < stop e i).
+    { apply opens_split in HO as [(A & B & C & _)|(j & A & _ & _ & (B & C & D & _))]; simpl in *; auto. }
+    destruct HF as [HF HI]. apply opening_true in HF as [_ HF]. rewrite HF.
+    apply (before_stop e i k) in HI as [_ HE]; [|lia].
+    rewrite HE by lia. reflexivity.
+  Qed.
+
+  Theorem robustness_right : forall p ended e known i, agrees ended e -> (known = true -> i < stop e i) ->
+    says (robustness v t n p ended known i) (satisfies p s t (Some (stop e i)) i).
+  Proof.
+    induction p; intros ended e known i HA HK; cbn [robustness satisfies].
     - apply at_margins_right. intros a. simpl. destruct (Nat.ltb_spec i n) as [Hi|Hi].
-      + eapply says_iff; [apply says_and; [apply atoms_right|]; intros _; apply says_not, HA|].
+      + destruct known.
+        { specialize (HK eq_refl). apply Nat.ltb_lt in HK. rewrite HK. apply atoms_right. }
+        eapply says_iff; [apply says_and; [apply atoms_right|]; intros _; apply says_not, HA|].
         destruct (Nat.ltb_spec i (stop e i)) as [HS|HS].
         * apply before_stop in HS as [_ HS]; auto. rewrite HS by lia. intuition congruence.
         * destruct (e i) eqn:E; [unfold no_atom; intuition congruence|]. exfalso. assert (i < stop e i); [|lia].
@@ -337,35 +360,37 @@ Section Sound.
         unfold no_atom. split; margins; intros; discriminate.
     - eapply says_iff; [apply says_every; intros k Hk; apply says_implies; [apply (outside_right _ e); auto|];
         intros _; apply letter_right|].
-      split; intros H k; [intros A B; apply H; auto; simpl in B; apply before_stop in B; auto; lia | intros A B; apply H; auto; lia].
-    - apply says_not, IHp, HA.
+      split; intros H k; [intros A B; apply H; auto; simpl in B; apply before_stop in B; auto; lia | intros A B;
+        apply H; auto; lia].
+    - apply says_not, IHp; auto.
     - apply says_and; [now apply IHp1 | intros _; now apply IHp2].
     - apply says_or; [now apply IHp1 | now apply IHp2].
     - apply says_implies; [now apply says_not, IHp1 | intros _; now apply IHp2].
     - eapply says_iff; [apply says_every; intros k Hk; apply says_implies; [apply (outside_right _ e); auto|];
-        intros _; apply IHp, HA|].
+        intros HI; apply IHp; [exact HA | intros HT; apply (stop_inside e i); [lia | exact HI]]|].
       split; intros H k; [intros A B; assert (HS := B); simpl in HS; apply before_stop in HS; auto;
         rewrite <- (stop_later e i k) by auto; apply H; auto; lia | intros A B; simpl in B;
         rewrite (stop_later e i k) by (auto; lia); apply H; auto; lia].
     - eapply says_iff; [apply says_every; intros k Hk; apply says_implies; [apply (outside_right _ e); auto|];
-        intros _; apply says_not, IHp, HA|].
+        intros HI; apply says_not, IHp; [exact HA | intros HT; apply (stop_inside e i); [lia | exact HI]]|].
       split; intros H k; [intros A B; assert (HS := B); simpl in HS; apply before_stop in HS; auto;
         rewrite <- (stop_later e i k) by auto; apply H; auto; lia | intros A B; simpl in B;
         rewrite (stop_later e i k) by (auto; lia); apply H; auto; lia].
     - eapply says_iff; [apply says_some; intros k Hk; apply says_and; [apply (inside_right _ e); auto|];
-        intros _; apply IHp, HA|].
+        intros HI; apply IHp; [exact HA | intros HT; apply (stop_inside e i); [lia | exact HI]]|].
       split; intros (k & A & B & C); exists k.
       + simpl in B. rewrite (stop_later e i k) in C by (auto; lia). repeat split; auto; lia.
       + assert (HS := B). simpl in HS. apply before_stop in HS as [HS _]; auto.
         repeat split; auto. now rewrite (stop_later e i k) by auto.
     - eapply says_iff; [apply says_every; intros k Hk; apply says_implies; [apply says_not, (first_right _ _ e); auto|];
-        intros _; apply IHp, HA|].
+        intros (_ & HI & _); apply IHp; [exact HA | intros HT; apply (stop_inside e i); [lia | exact HI]]|].
       split; intros H k.
       + intros HF. assert (HG := HF). destruct HG as (A & B & _). assert (HS := B). simpl in HS.
         rewrite <- (stop_later e i k) by auto. apply before_stop in HS as [HS _]; auto.
-      + intros A HF. assert (HG := HF). destruct HG as (_ & B & _). simpl in B. rewrite (stop_later e i k) by (auto; lia). auto.
+      + intros A HF. assert (HG := HF). destruct HG as (_ & B & _). simpl in B. rewrite (stop_later e i k) by (auto;
+          lia). auto.
     - eapply says_iff.
-      + apply says_and; [|intros _; apply IHp, ended_by_right, HA].
+      + apply says_and; [|intros _; apply IHp; [now apply ended_by_right | discriminate]].
         apply (says_some _ _ _ (fun k => inside (Some (stop e i)) k /\ at_letter x (s k) = true)).
         intros k Hk. apply says_and; [apply (inside_right _ e); auto|]. intros _. apply letter_right.
       + destruct (stop_cut e (fun k => at_letter x (s k)) i) as [(k & Hk & Bk & Nk & E)|(HN & E)]; rewrite E; split.
@@ -377,8 +402,9 @@ Section Sound.
           split; auto. assert (HS := B). simpl in HS. apply before_stop in HS as [HS _]; auto. exists k. auto.
         * intros [(k & A & B & C) _]. exfalso. simpl in B. rewrite HN in C by lia. discriminate.
         * intros (k & (A & B & C & D) & _). exfalso. simpl in B. rewrite HN in C by lia. discriminate.
-    - eapply says_iff; [apply says_every; intros k Hk; apply says_implies; [apply says_not, (opens_right _ _ _ e); auto|];
-        intros _; apply IHp, ended_by_right, HA|].
+    - eapply says_iff; [apply says_every; intros k Hk; apply says_implies; [apply says_not, (opens_right _ _ _ e);
+        auto|];
+        intros HO; apply IHp; [now apply ended_by_right | intros HT; now apply (opens_inside x y e i k)]|].
       split.
       + intros H k L' HO HG. assert (HI : i <= k /\ k < stop e i).
         { apply opens_split in HO as [(A & B & _)|(j & A & _ & _ & (B & C & _))]; simpl in *; lia. }
@@ -387,9 +413,11 @@ Section Sound.
       + intros H k Hk HO. apply (H k _ HO). assert (HI : i <= k /\ k < stop e i).
         { apply opens_split in HO as [(A & B & _)|(j & A & _ & _ & (B & C & _))]; simpl in *; lia. }
         rewrite <- (stop_later e i k) by tauto. now apply segment_stop.
-    - eapply says_iff; [apply IHp with (e := fun k => e k || (t i + d <? t k))|].
+    - eapply says_iff; [apply (IHp _ (fun k => e k || (t i + d <? t k)))|].
       + intros k. destruct (t i + d <? t k); [rewrite orb_true_r | rewrite orb_false_r; apply HA].
         split; margins; auto.
+      + intros E. specialize (HK E). apply before_stop; auto. apply before_stop in HK as [A B]; auto. split; auto.
+        intros m Hm. rewrite B by auto. replace m with i by lia. apply Nat.ltb_ge. lia.
       + split; [intros H L' HP; apply part_stop in HP as ->; exact H | intros H; apply H; now apply part_stop].
   Qed.
 
@@ -412,7 +440,8 @@ Section Sound.
     - eapply says_iff; [apply (says_some _ _ _ (fun j => recent t D j k = true /\ at_letter q (s j) = true /\
         forall m, S j <= m < S k -> at_letter p (s m) = true))|].
       + intros j _. destruct (recent t D j k); [|split; margins; intros; intuition discriminate].
-        eapply says_iff; [apply says_and; [apply letter_right|]; intros _; apply says_every; intros; apply letter_right|].
+        eapply says_iff; [apply says_and; [apply letter_right|]; intros _; apply says_every; intros;
+          apply letter_right|].
         tauto.
       + rewrite some_instant_true. split; intros (j & A & B); exists j; rewrite !andb_true_iff, every_instant_true in *;
           (split; [lia|]; intuition; match goal with H : _ |- _ => apply H end; lia).
@@ -466,11 +495,11 @@ Section Near.
     near d (opens_margin v x y E i k) (opens_margin v' x y E' i k).
   Proof. unfold opens_margin. auto 12 using near_outside, near_first with near. Qed.
 
-  Theorem robustness_near : forall p E E' i, (forall k, near d (E k) (E' k)) ->
-    near d (robustness v t n p E i) (robustness v' t n p E' i).
+  Theorem robustness_near : forall p E E' known i, (forall k, near d (E k) (E' k)) ->
+    near d (robustness v t n p E known i) (robustness v' t n p E' known i).
   Proof.
-    induction p; intros E E' i HE; cbn [robustness]; auto 8 using near_outside, near_first, near_opens with near.
-    - apply near_margins. intros a. destruct (i <? n); simpl; auto with near.
+    induction p; intros E E' known i HE; cbn [robustness]; auto 8 using near_outside, near_first, near_opens with near.
+    - apply near_margins. intros a. destruct (i <? n); simpl; auto. destruct known; auto with near.
     - apply near_least; [auto 8 using near_outside with near|]. apply IHp. intros k. unfold ended_by. auto with near.
     - apply near_least_of. intros k. apply near_greatest; [auto using near_opens with near|]. apply IHp.
       intros j. unfold ended_by. auto with near.
@@ -491,17 +520,18 @@ End Near.
 (** A run has the verdict of every other one whose margins differ by less than its robustness. *)
 Corollary same_verdict : forall d v v' t n s p, (forall k a, near d (v k a) (v' k a)) ->
   (forall k a, says (v' k a) (s k a = true)) -> (0 <= d)%Z ->
-  (above d (robustness v t n p never_ends 0) -> satisfies p s t (Some n) 0) /\
-  (above d (neg (robustness v t n p never_ends 0)) -> ~ satisfies p s t (Some n) 0).
+  (above d (robustness v t n p never_ends false 0) -> satisfies p s t (Some n) 0) /\
+  (above d (neg (robustness v t n p never_ends false 0)) -> ~ satisfies p s t (Some n) 0).
 Proof.
   intros d v v' t n s p HN HS Hd.
   assert (HE : agrees never_ends (fun _ => false)) by (intros k; split; margins; intros; discriminate).
-  pose proof (robustness_right v' t n s HS p never_ends _ 0 HE) as [A B].
+  pose proof (robustness_right v' t n s HS p never_ends _ false 0 HE ltac:(discriminate)) as [A B].
   replace (stop n (fun _ => false) 0) with n in A, B.
   2: { apply (same_stop _ _ 0); [lia | apply stop_least|]. intros k _. rewrite before_stop by lia. intuition. }
-  assert (HR : near d (robustness v t n p never_ends 0) (robustness v' t n p never_ends 0))
+  assert (HR : near d (robustness v t n p never_ends false 0) (robustness v' t n p never_ends false 0))
     by (apply robustness_near; auto; intros; simpl; auto).
-  split; intros H; [apply A | apply B]; destruct (robustness v t n p never_ends 0), (robustness v' t n p never_ends 0);
+  split; intros H; [apply A | apply B];
+    destruct (robustness v t n p never_ends false 0), (robustness v' t n p never_ends false 0);
     margins.
 Qed.
 

@@ -53,40 +53,45 @@ class Measured:
 Run = tuple[Measured, ...]
 
 
-def robustness(run: Run, property_: Property) -> float:
-    """By how much `run`, possibly empty, satisfies `property_`, clause by clause as `satisfies` has it."""
+def robustness(run: Run, property_: Property, is_inside: bool = False) -> float:
+    """By how much `run`, possibly empty, satisfies `property_`, clause by clause as `satisfies` has it.
+
+    If it `is_inside`, that the first instant is in the segment has been asked, and is not asked again.
+    """
     match property_:
         case Now(predicate):
-            return _seen(predicate, run)
+            return margin(predicate, run[0].margins) if is_inside else _seen(predicate, run)
         case Throughout(predicate):
             return _least(max(_outside(run, k), margin(predicate, run[k].margins)) for k in range(len(run)))
         case Not(operand):
-            return -robustness(run, operand)
+            return -robustness(run, operand, is_inside)
         case And(left, right):
-            return min(robustness(run, left), robustness(run, right))
+            return min(robustness(run, left, is_inside), robustness(run, right, is_inside))
         case Or(left, right):
-            return max(robustness(run, left), robustness(run, right))
+            return max(robustness(run, left, is_inside), robustness(run, right, is_inside))
         case Implies(left, right):
-            return max(-robustness(run, left), robustness(run, right))
+            return max(-robustness(run, left, is_inside), robustness(run, right, is_inside))
         case Always(operand):
-            return _least(max(_outside(run, k), robustness(run[k:], operand)) for k in range(len(run)))
+            return _least(max(_outside(run, k), robustness(run[k:], operand, True)) for k in range(len(run)))
         case Never(operand):
-            return _least(max(_outside(run, k), -robustness(run[k:], operand)) for k in range(len(run)))
+            return _least(max(_outside(run, k), -robustness(run[k:], operand, True)) for k in range(len(run)))
         case Eventually(operand):
-            return _greatest(min(-_outside(run, k), robustness(run[k:], operand)) for k in range(len(run)))
+            return _greatest(min(-_outside(run, k), robustness(run[k:], operand, True)) for k in range(len(run)))
         case After(event, body):
-            return _least(max(-_first(run, event, k), robustness(run[k:], body)) for k in range(len(run)))
+            return _least(max(-_first(run, event, k), robustness(run[k:], body, True)) for k in range(len(run)))
         case Until(event, body):
             comes = _greatest(min(-_outside(run, k), margin(event, run[k].margins)) for k in range(len(run)))
             return min(comes, robustness(_ended_by(run, event), body))
         case AfterUntil(opening, closing, body):
             opens = ltl.And(opening, ltl.Not(closing))
             return _least(
-                max(-_opens(run, opens, closing, k), robustness(_ended_by(run[k:], closing), body))
+                max(-_opens(run, opens, closing, k), robustness(_ended_by(run[k:], closing), body, True))
                 for k in range(len(run))
             )
+        case Within(duration, body, 0):
+            return robustness(_part(run, duration), body, is_inside)
         case Within(duration, body, start):
-            return robustness(_part(run, start, duration), body)
+            return _interval(run, start, Within(duration - start, body))
         case _:
             assert_never(property_)
 
@@ -147,13 +152,22 @@ def _ended_by(run: Run, event: Formula) -> Run:
     return tuple(replace(each, ended=max(each.ended, margin(event, each.margins))) for each in run)
 
 
-def _part(run: Run, start: Nanoseconds, end: Nanoseconds) -> Run:
-    """The instants from `start` to `end` later than the first."""
-    return tuple(
-        replace(each, ended=_outside(run, k))
-        for k, each in enumerate(run)
-        if start <= each.time - run[0].time <= end
-    )
+def _part(run: Run, duration: Nanoseconds) -> Run:
+    """The instants that are at most `duration` later than the first."""
+    return tuple(each for each in run if each.time - run[0].time <= duration)
+
+
+def _interval(run: Run, start: Nanoseconds, bounded: Within) -> float:
+    """As a scope says it that opens when `start` has passed, `interval_means` in `proofs/Intervals.v`.
+
+    Where the segment has ended before, there are no instants, which is enough for some properties.
+    """
+    is_enough = robustness((), bounded) > 0
+    first = next((k for k, each in enumerate(run) if each.time - run[0].time >= start), None)
+    if first is None:
+        return TRUE if is_enough else FALSE
+    found, ended = robustness(run[first:], bounded, True), _outside(run, first)
+    return max(ended, found) if is_enough else min(-ended, found)
 
 
 def held(steps: Sequence[Measured], until: Nanoseconds, news: Collection[str] = ()) -> Run:
@@ -175,8 +189,7 @@ def with_past(run: Run, atoms: Iterable[PastAtom]) -> Run:
     for atom in atoms:
         found = [_looking_back(atom, run, n) for n in range(len(run))]
         run = tuple(
-            replace(each, margins={**each.margins, atom.name: number})
-            for each, number in zip(run, found, strict=True)
+            replace(each, margins={**each.margins, atom.name: number}) for each, number in zip(run, found, strict=True)
         )
     return run
 

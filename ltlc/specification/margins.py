@@ -43,14 +43,19 @@ def difference(condition: Condition) -> Expression | None:
         case Comparison(Call(Function.INSIDE)):
             return None
         case Comparison(left, Relation.EQUAL, right, most):
-            apart = Call(Function.ABS, (Call(Function.GAP, (left, right)),))
+            apart = Call(Function.ABS, (_minus(left, right),))
             return Arithmetic(Operator.MINUS, Number(most), apart) if most else Negative(apart)
         case Comparison(left, relation, right, moved):
             shifted = Arithmetic(Operator.PLUS, right, Number(moved)) if moved else right
-            is_below = relation in (Relation.LESS, Relation.AT_MOST)
-            return Call(Function.GAP, (shifted, left) if is_below else (left, shifted))
+            return _minus(shifted, left) if relation in (Relation.LESS, Relation.AT_MOST) else _minus(left, shifted)
         case _:
             return None
+
+
+def _minus(left: Expression, right: Expression) -> Expression:
+    """The difference, which is 0 of equal infinities."""
+    is_finite = any(isinstance(side, Number) and math.isfinite(side.value) for side in (left, right))
+    return Arithmetic(Operator.MINUS, left, right) if is_finite else Call(Function.GAP, (left, right))
 
 
 def by_how_much(condition: Condition, values: Values[Known]) -> float:

@@ -46,8 +46,20 @@ class Text:
             for each in tally.properties.values()
         ]
         table = aligned([head, *rows], right=range(1, len(head))) if rows else []
-        lines = [*([] if self._has_blank_line else [""]), *table, "", "; ".join([tally.sentence(), *remarks(found)])]
+        told = "; ".join([tally.sentence(), *remarks(found)])
+        lines = [*([] if self._has_blank_line else [""]), *table, *_closest(tally), "", told]
         return "".join(f"{line}\n" for line in lines)
+
+
+def _closest(tally: Tally) -> list[str]:
+    """The least margin of each property that was measured, and in which recording it was."""
+    rows = [
+        [reports.printable(each.label), f"{least:.6g}", f"{each.median:.6g}", reports.printable(recording)]
+        for each in tally.measured
+        for least, recording in [min(each.margins)]
+    ]
+    head = ["closest to failing", "least margin", "median", "recording"]
+    return ["", *aligned([head, *rows], right=range(1, 3))] if rows else []
 
 
 def remarks(found: Found) -> list[str]:
