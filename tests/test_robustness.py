@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+import base64
 import json
+import zlib
 from pathlib import Path
 
+import numpy as np
 import pytest
+from stepping import from_text
 
 import ltlc
 from ltlc.cli import main
+from ltlc.interfaces.pages.report import PageReport
+from ltlc.monitoring.judging.run import Judge
 
 PROPS = """
 decl speed /speed std_msgs/Float64.data
@@ -87,6 +93,23 @@ def test_a_campaign_ranks_properties_by_their_least_margin(drive: Path, capsys: 
     assert found["late"] is None
     ran(drive, str(other), "--results", str(results), "--format", "json")
     assert "robustness" not in capsys.readouterr().out  # which is judged anew, since this is another question
+
+
+def test_the_page_has_a_curve_under_the_verdict(drive: Path) -> None:
+    compiled, specification = from_text(PROPS)
+    page = PageReport(compiled, specification)
+    for measures in (True, False):
+        collected = page.collector()
+        judge = Judge(compiled, specification, keep_trails=True, measures=measures)
+        page.add(judge.judge(drive / "drive.csv", [collected.take]), collected)
+    drawn = page._data.as_json()
+    panels = [timeline["panels"] for timeline in drawn["timelines"]]
+    assert [each[0]["title"] for each in panels[:3]] == ["robustness"] * 3
+    assert "robustness" not in [panel["title"] for each in panels[3:] for panel in each]
+    [line] = panels[0][0]["lines"]
+    blob = zlib.decompress(base64.b64decode(drawn["blobs"][line["values"]["blob"]]))
+    assert np.frombuffer(blob, line["values"]["type"]).tolist() == [0.25, 0.25, 0.25]
+    assert panels[0][0]["limits"] == [{"text": "robustness > 0", "value": 0.0, "reach": 0.0}]
 
 
 def test_python_has_a_margin_for_each_step() -> None:
