@@ -5,7 +5,7 @@ Require Import Ltl Properties Anew Past Relativise Encodings Agreement Clocks Re
   ClockSteps Times OneClock
   Lasso Monitor Conditions Judgements Moves Machines Distribute Certificate Infinite InTime Thresholds
   Program Follows Followed Shown Counts Intervals Held Counting Evidence Instances Diagrams Guard GuardedPlaces
-  GuardCheck GuardInTime.
+  GuardCheck GuardInTime Robustness.
 
 (** Nothing. *)
 Definition constructive :=
@@ -22,7 +22,8 @@ Definition constructive :=
    @interval_means, @interval_means_not, @open_for, @opened, @episode_opened, @past_part_right, @clock_part_right,
    @next_part_right, @counted_parts_right, @whole_means, @evidence_of_instances, @lines_of_instance, @opened_by_is,
    @guarded_well, @never_at_a_loss, @in_time, @few_are_sent, @time_goes_on, @necessary, @guarded_verdict,
-   @check_guard_sound, @check_guard_of_something, @moves_in_time, @started_clocks_wait).
+   @check_guard_sound, @check_guard_of_something, @moves_in_time, @started_clocks_wait, @robustness_right, @looking_back_right,
+   @robustness_near, @looking_back_near, @same_verdict).
 
 (** At most the law of the excluded middle. *)
 Definition classical :=

@@ -34,6 +34,7 @@ ROOMS = {
     "interfaces/editor": "test_editor.py test_editor_server.py test_editors.py",
     "monitoring": "test_violations.py test_columns.py test_assurance_evidence*.py",
     "monitoring/judging": "test_recordings*.py test_one_drive_in_all_forms.py test_explained.py test_violations.py "
+    "test_robustness.py "
     "test_assurance_evidence.py",
     "frontend/language": "test_language_*.py test_ground_truth.py test_analysis_suppression.py",
     "frontend/layout": "test_layout.py test_commands_format.py",
@@ -53,7 +54,8 @@ ROOMS = {
     "test_explained.py",
     "semantics": "test_semantics_*.py test_diagrams.py test_runtime_episodes.py test_openings.py",
     "interfaces/serve": "test_serve.py test_serve_browser.py",
-    "specification": "test_specification_*.py test_requirements.py test_language_signals.py test_language_margins.py "
+    "specification": "test_specification_*.py test_columns_robustness.py "
+    "test_requirements.py test_language_signals.py test_language_margins.py "
     "test_language_guards.py "
     "test_assurance_gate.py",
     "frontend/starter": "test_commands_new.py",

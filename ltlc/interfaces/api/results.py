@@ -9,6 +9,7 @@ from typing import Any
 from ltlc.base.diagnostics import Diagnostic
 from ltlc.base.errors import UnusableInput
 from ltlc.dataclass import dataclass
+from ltlc.monitoring.columns.measuring import Curve
 from ltlc.monitoring.judging.run import RunReport
 from ltlc.runtime import reports
 from ltlc.runtime.properties import Failure, Moment
@@ -67,6 +68,7 @@ class Run(Mapping[str, PropertyResult]):
 
     _report: RunReport
     _page: Callable[[bool], str] | None = None
+    _measured: Callable[[], Mapping[str, Curve]] | None = None
 
     def __getitem__(self, label: str) -> PropertyResult:
         return self._results[label]
@@ -97,6 +99,17 @@ class Run(Mapping[str, PropertyResult]):
     def violations(self) -> list[PropertyResult]:
         """The properties that are violated, in the order in which they were."""
         return [] if self._report.session is None else violations_of(self._report.session)
+
+    @cached_property
+    def robustness(self) -> Mapping[str, Curve]:
+        """By how much each property holds, or is violated, by its label; see `Curve`.
+
+        `run.robustness["slow"].margins` is a numpy array with a number for each step. The recording is read again for
+        it. Raises UnusableInput of a run that was stepped, whose rows are not kept.
+        """
+        if self._measured is None:
+            raise UnusableInput((), "a monitor does not keep its rows; use `ltlc.run` to measure them")
+        return self._measured()
 
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:

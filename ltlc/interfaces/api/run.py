@@ -19,6 +19,7 @@ from ltlc.inputs.recordings.signals import FromTable
 from ltlc.interfaces.api.prepare import Prepared, Text, encoding_of, folders, prepare, read
 from ltlc.interfaces.api.results import Run
 from ltlc.interfaces.api.times import Seconds, limit_of, needs_time
+from ltlc.monitoring.columns.measuring import Curve
 from ltlc.monitoring.judging.run import Judge, Open
 
 Row = Mapping[str, object]
@@ -141,7 +142,12 @@ def _judged(prepared: Prepared, judge: Judge, recording: Recorded) -> Run:
     if report.session is None:
         raise UnusableInput(report.diagnostics)
     told = replace(report, diagnostics=(*prepared.diagnostics, *report.diagnostics))
-    return Run(told, partial(_page, judge, path))
+    return Run(told, partial(_page, judge, path), partial(_robustness, judge, path))
+
+
+def _robustness(judge: Judge, path: Path) -> Mapping[str, Curve]:
+    """By how much the properties hold, of a recording which is judged again for it."""
+    return replace(judge, measures=True).judge(path).robustness
 
 
 def _page(judge: Judge, path: Path, is_framed: bool) -> str:

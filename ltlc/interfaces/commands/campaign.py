@@ -124,7 +124,8 @@ def _digest(judge: Judge, options: argparse.Namespace) -> str:
     """What identifies how a campaign judged: the text, the monitors as code, and the settings."""
     code = plan_code(judge.compiled, judge.specification, ())
     text = judge.specification.source.text
-    return digest([text, options.encoding, code, repr(judge.reading), *(["guarded"] if options.guard else [])])
+    guarded = ["guarded"] if options.guard else []
+    return digest([text, options.encoding, code, repr((judge.reading, judge.measures)), *guarded])
 
 
 @contextmanager

@@ -32,6 +32,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     _add_campaign(parser.add_argument_group("many recordings"))
     parser.add_argument("--format", choices=("text", "json", "junit"), default="text")
     parser.add_argument("--all", action="store_true", help="in text, list all violations, not only the first ones")
+    parser.add_argument(
+        "--robustness",
+        action="store_true",
+        help="in text and JSON, also report by how much each property holds, or is violated",
+    )
     parser.add_argument("--verdicts", action="store_true", help="with JSON, include the verdict after each step")
     parser.add_argument(
         "--timing",
@@ -154,6 +159,7 @@ def _run(options: argparse.Namespace) -> int:
         evidence=evidence,
         cutting=cut,
         guarding=guards,
+        measures=options.robustness,
     )
     if found is not None:
         from ltlc.interfaces.commands.campaign import run_several

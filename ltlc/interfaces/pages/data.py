@@ -52,8 +52,9 @@ def timeline(
     violations: Sequence[Violation],
     panels: list[Panel],
     series: Mapping[Expression, Series],
+    robustness: Series | None = None,
 ) -> dict[str, Any]:
-    """The timeline of one property; times are ns since the session began, as numbers."""
+    """The timeline of one property; times are ns since the session began, as numbers. Its `robustness` comes first."""
     began, ended, scale = session.began, session.time, session.scale
     assert began is not None
     assert ended is not None
@@ -93,7 +94,10 @@ def timeline(
             }
             for each in violations
         ],
-        "panels": [_panel(data, began, panel, series) for panel in panels],
+        "panels": [
+            *([] if robustness is None else [_robustness(data, began, robustness)]),
+            *(_panel(data, began, panel, series) for panel in panels),
+        ],
     }
 
 
@@ -115,6 +119,17 @@ def _panel(data: Data, began: Nanoseconds, panel: Panel, series: Mapping[Express
         "wanted": [printable(name) for name in panel.wanted],
         "lines": lines,
         "limits": list(_limits(panel)),
+    }
+
+
+def _robustness(data: Data, began: Nanoseconds, robustness: Series) -> dict[str, Any]:
+    return {
+        "title": "robustness",
+        "kind": Drawing.NUMBER.value,
+        "names": [],
+        "wanted": [],
+        "lines": [{"role": "signal", **_line(data, began, robustness)}],
+        "limits": [{"text": "robustness > 0", "value": 0.0, "reach": 0.0}],
     }
 
 

@@ -20,7 +20,8 @@ from ltlc.interfaces.pages.data import Data, timeline
 from ltlc.interfaces.pages.machines import machine_picture
 from ltlc.interfaces.pages.maps import Course, courses, map_of
 from ltlc.interfaces.pages.panels import Panel, panels
-from ltlc.interfaces.pages.series import Collector
+from ltlc.interfaces.pages.series import Collector, Series
+from ltlc.monitoring.columns.measuring import Curve
 from ltlc.monitoring.judging.run import RunReport
 from ltlc.monitoring.judging.violations import only_first, violation_text
 from ltlc.monitoring.later import all_violations
@@ -145,7 +146,8 @@ class PageReport:
         is_violated = track.verdict is Verdict.VIOLATED
         self._figures += is_violated
         marks, series, violations = _first_marks(trail), run.collected.series, all_violations(track) or []
-        self._data.timelines.append(timeline(self._data, run.session, marks, violations, drawn, series))
+        robustness = self._robustness(run.report.robustness.get(track.property.label))
+        self._data.timelines.append(timeline(self._data, run.session, marks, violations, drawn, series, robustness))
         scale = run.session.scale
         listed = [violation_text(scale, each, run.ended) for each in violations]
         told = [{"text": reports.moment_text(c.moment, scale), "verdict": c.current.value} for c in trail.changes]
@@ -169,6 +171,14 @@ class PageReport:
             "changes": told[:MOST_CHANGES],
             "changes_left_out": len(told[MOST_CHANGES:]),
         }
+
+    def _robustness(self, curve: Curve | None) -> Series | None:
+        """What is drawn of a curve, if there is one."""
+        if curve is None or not len(curve.times):
+            return None
+        series = Series(self._most, [0.0])
+        series.add(curve.times, curve.margins)
+        return series
 
     def _english(self, place: int) -> str:
         return printable(self._explanations[place].english) if self._explanations else ""

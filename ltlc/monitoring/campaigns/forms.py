@@ -49,8 +49,19 @@ class Text:
         ]
         table = aligned([head, *rows], right=range(1, len(head))) if rows else []
         said = ["; ".join([tally.sentence(), *remarks(found)]), *tally.guard_sentences()]
-        lines = [*([] if self._has_blank_line else [""]), *table, "", *said]
+        lines = [*([] if self._has_blank_line else [""]), *table, *_closest(tally), "", *said]
         return "".join(f"{line}\n" for line in lines)
+
+
+def _closest(tally: Tally) -> list[str]:
+    """The least margin of each property that was measured, and in which recording it was."""
+    rows = [
+        [reports.printable(each.label), f"{least:.6g}", f"{each.median:.6g}", reports.printable(recording)]
+        for each in tally.measured
+        for least, recording in [min(each.margins)]
+    ]
+    head = ["closest to failing", "least margin", "median", "recording"]
+    return ["", *aligned([head, *rows], right=range(1, 3))] if rows else []
 
 
 def remarks(found: Found) -> list[str]:

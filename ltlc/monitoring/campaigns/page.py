@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 from urllib.parse import quote
@@ -21,6 +21,9 @@ SIDE_BY_SIDE = 4
 
 TIMELINE = 200
 """How wide a timeline is, in the units of its drawing."""
+
+TREND = 24
+"""How high the line of margins is."""
 
 
 def summary_page(specification: str, tally: Tally, found: Found, english: Mapping[str, str], folder: Path) -> str:
@@ -40,10 +43,12 @@ def summary_page(specification: str, tally: Tally, found: Found, english: Mappin
         kinds=[kind.value for kind in Result],
         rows=[_row(each) for each in properties],
         failing=[_failures(each) for each in properties if each.failing],
+        closest=[_closest(each) for each in tally.measured],
         idle=[each for each in properties if each.is_idle],
         errors=tally.errors,
         english=english,
         width=TIMELINE,
+        height=TREND,
     )
 
 
@@ -55,6 +60,30 @@ def _link(name: str, folder: Path) -> str:
 def _row(of_one: PropertyTally) -> dict[str, Any]:
     cells = [(kind.name.lower(), of_one.counts[kind]) for kind in Result]
     return {"label": of_one.label, "text": of_one.text, "cells": cells}
+
+
+def _closest(of_one: PropertyTally) -> dict[str, Any]:
+    """The least margin of a property and its recording; and all margins, one after the other, as a line to draw."""
+    least, recording = min(of_one.margins)
+    return {
+        "label": of_one.label,
+        "text": of_one.text,
+        "least": f"{least:.6g}",
+        "median": f"{of_one.median:.6g}",
+        "recording": recording,
+        "trend": _trend([each.number for each in of_one.margins]),
+    }
+
+
+def _trend(margins: Sequence[float]) -> dict[str, Any] | None:
+    """A line over the recordings, and at which height 0 is; None of a single one."""
+    if len(margins) < 2:
+        return None
+    low, high = min(0.0, *margins), max(0.0, *margins)
+    scale = (TREND - 4) / ((high - low) or 1.0)
+    heights = [round(TREND - 2 - scale * (margin - low), 2) for margin in [0.0, *margins]]
+    places = (round(TIMELINE * number / (len(margins) - 1), 2) for number in range(len(margins)))
+    return {"zero": heights[0], "points": " ".join(f"{x},{y}" for x, y in zip(places, heights[1:], strict=True))}
 
 
 def _failures(of_one: PropertyTally) -> dict[str, Any]:

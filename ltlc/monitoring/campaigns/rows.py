@@ -28,6 +28,7 @@ COLUMNS = {
     "open_since_ns": "int64",
     "episodes": "int64",
     "never_triggered": "bool",
+    "robustness": "double",
     "steps": "int64",
     "invalid_steps": "int64",
     "is_damaged": "bool",
@@ -71,6 +72,7 @@ def _row(found: PropertyOutcome) -> Row:
     report = found.report
     row: Row = {"property": found.label, "sentence": found.sentence, "figure": found.figure}
     row |= {name: report[name] for name in _COPIED}
+    row["robustness"] = (report.get("robustness") or {}).get("margin")
     row["report"] = json.dumps(report)
     decided = report["decided_at"]
     if decided is not None:

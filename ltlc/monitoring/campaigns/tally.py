@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections import Counter
 from dataclasses import field
 from enum import Enum
+from statistics import median
+from typing import NamedTuple
 
 from ltlc.dataclass import dataclass
 from ltlc.monitoring.campaigns.outcomes import Outcome, PropertyOutcome
@@ -54,14 +56,30 @@ class Failing:
     end: Nanoseconds | None
 
 
+class Margin(NamedTuple):
+    """By how much a property holds in a recording, or is violated."""
+
+    number: float
+    recording: str
+
+
 @dataclass(slots=True)
 class PropertyTally:
-    """How often a property came out how; where it was violated, in the order of the recordings, as far as is listed."""
+    """How often a property came out how; where it was violated, in the order of the recordings, as far as is listed.
+
+    If recordings were measured, `margins` are those with a number, in their order.
+    """
 
     label: str
     text: str
     counts: dict[Result, int] = field(default_factory=lambda: dict.fromkeys(Result, 0))
     failing: list[Failing] = field(default_factory=list)
+    margins: list[Margin] = field(default_factory=list)
+
+    @property
+    def median(self) -> float:
+        """The middle one of the margins, of which there is one, or the mean of the middle two."""
+        return median(each.number for each in self.margins)
 
     @property
     def is_idle(self) -> bool:
@@ -100,6 +118,8 @@ class Tally:
         for found in outcome.properties:
             of_one = self.properties.setdefault(found.label, PropertyTally(found.label, str(found.report["text"])))
             of_one.counts[kind_of(found)] += 1
+            if (margin := (found.report.get("robustness") or {}).get("margin")) is not None:
+                of_one.margins.append(Margin(margin, outcome.place.name))
             if found.verdict is Verdict.VIOLATED and len(of_one.failing) < LISTED:
                 times = (outcome.report.get(name) for name in ("beginning_ns", "end_ns"))  # not in an older table
                 of_one.failing.append(Failing(outcome.place.name, found, *times))
@@ -114,6 +134,11 @@ class Tally:
             return 2
         return next((code for code in (1, 3) if self.codes[code]), 0)
 
+    @property
+    def measured(self) -> list[PropertyTally]:
+        """The properties with margins, those first that are violated most, or come closest to it."""
+        return sorted((each for each in self.properties.values() if each.margins), key=lambda each: min(each.margins))
+
     def document(self) -> dict[str, object]:
         """The tally as an object of JSON."""
         guards = [{"out": out, **{a.value: counts[a] for a in Action}} for out, counts in self.guards.items()]
@@ -126,7 +151,7 @@ class Tally:
             "judged_before": self.kept,
             "tried_again": self.again,
             "properties": [
-                {"label": each.label} | {kind.name.lower(): n for kind, n in each.counts.items()}
+                {"label": each.label} | {kind.name.lower(): n for kind, n in each.counts.items()} | _robustness(each)
                 for each in self.properties.values()
             ],
             **({"guard": guards} if guards else {}),
@@ -151,6 +176,14 @@ class Tally:
         }
         parts = [f"{count} {what}" for what, count in told.items() if count]
         return f"{reports.counted(self.recordings, 'recording')}: {', '.join(parts) or 'nothing was judged'}"
+
+
+def _robustness(of_one: PropertyTally) -> dict[str, object]:
+    if not of_one.margins:
+        return {}
+    least, recording = min(of_one.margins)
+    found = {"least": least, "recording": recording, "median": of_one.median, "measured": len(of_one.margins)}
+    return {"robustness": found}
 
 
 def brief(outcome: Outcome) -> str:

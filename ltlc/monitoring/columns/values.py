@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import assert_never
 
 import numpy as np
 
-from ltlc.inputs.recordings.blocks import Array
+from ltlc.inputs.recordings.blocks import Array, Places
 from ltlc.monitoring.columns.arrays import ByStep, Views, changes, combined, pieces, products, sums
 from ltlc.monitoring.columns.bits import Mask
 from ltlc.monitoring.columns.functions import ROWS
@@ -120,52 +120,78 @@ def arrays_at(array: p.Expression, steps: Steps) -> ByStep:
 
 
 def _counted(count: p.Count, steps: Steps) -> Array:
-    """The value of `count`, computed once where everything that it reads stays the same."""
-    arrays = [arrays_at(array, steps) for array in count.arrays]
-    columns = {single: np.asarray(_value(single, steps)) for single in dict.fromkeys(_singles(count.guard))}
+    """The value of `count`."""
+
+    def of(elements: Given, sizes: Places) -> Array:
+        return sums(np.broadcast_to(_value(count.guard, elements), len(elements)), sizes)
+
+    found = over_elements(count.lists, singles(count.guard), steps, of)
+    return found > 0 if count.is_any else found
+
+
+def over_elements(
+    lists: Sequence[Sequence[p.Expression]],
+    beside: Iterable[p.Expression],
+    steps: Steps,
+    of: Callable[[Given, Places], Array],
+) -> Array:
+    """What `of` makes of all combinations of elements of `lists`, once where everything that it reads stays the same.
+
+    It gets the elements of several steps, after one another, and how many there are of each; with the single values
+    `beside` them.
+    """
+    arrays = {array: arrays_at(array, steps) for of_list in lists for array in of_list}
+    columns = {single: np.asarray(_value(single, steps)) for single in dict.fromkeys(beside)}
     if len(arrays) == 1 and not columns:
-        return _counts(count, [arrays[0].arrays], columns, steps).take(arrays[0].numbers)
-    is_new = np.logical_or.reduce([changes(each) for each in (*(by.numbers for by in arrays), *columns.values())])
+        [only] = arrays.values()
+        return _of_elements(lists, dict.fromkeys(arrays, only.arrays), columns, steps, of).take(only.numbers)
+    is_new = np.logical_or.reduce(
+        [changes(each) for each in (*(by.numbers for by in arrays.values()), *columns.values())]
+    )
     at = np.flatnonzero(is_new)
-    views = [by.arrays.taken(by.numbers[at]) for by in arrays]
+    views = {array: by.arrays.taken(by.numbers[at]) for array, by in arrays.items()}
     here = {single: column[at] for single, column in columns.items()}
-    counts: Array = _counts(count, views, here, steps).take(is_new.cumsum() - 1)
-    return counts
+    found: Array = _of_elements(lists, views, here, steps, of).take(is_new.cumsum() - 1)
+    return found
 
 
-def _singles(guard: p.Expression) -> Iterator[p.Expression]:
+def singles(guard: p.Expression) -> Iterator[p.Expression]:
     """What the guard of a count compares elements with: the largest parts that read signals and are no conditions."""
     match guard:
         case p.Literal() | p.Each():
             return
         case p.Apply(_, arguments) if guard.type == BOOL or any(isinstance(part, p.Each) for part in p.parts(guard)):
             for argument in arguments:
-                yield from _singles(argument)
+                yield from singles(argument)
         case _:
             yield guard
 
 
-def _counts(count: p.Count, arrays: Sequence[Views], columns: Mapping[p.Expression, Array], steps: Steps) -> Array:
-    """The same of `arrays` that belong together, one after the other; `columns` of single values have one for each."""
-    views = dict(zip(count.arrays, arrays, strict=True))
-    lengths = [np.minimum.reduce([views[array].lengths for array in of_list]) for of_list in count.lists]
+def _of_elements(
+    lists: Sequence[Sequence[p.Expression]],
+    views: Mapping[p.Expression, Views],
+    columns: Mapping[p.Expression, Array],
+    steps: Steps,
+    of: Callable[[Given, Places], Array],
+) -> Array:
+    """The same of arrays that belong together, one after the other; `columns` of single values have one for each."""
+    lengths = [np.minimum.reduce([views[array].lengths for array in of_list]) for of_list in lists]
     sizes = lengths[0] if len(lengths) == 1 else products(lengths, MOST_COMBINATIONS)
 
-    def of(part: slice) -> Array:
+    def of_part(part: slice) -> Array:
         rows, total = [each[part] for each in lengths], int(sizes[part].sum())
         indexes = combined(rows, sizes[part]) if len(rows) > 1 else []
         known: dict[p.Expression, Array] = {}
-        for number, of_list in enumerate(count.lists):
+        for number, of_list in enumerate(lists):
             for array in of_list:
                 view = Views(views[array].elements, rows[number], views[array].starts[part])
                 found = view.at(indexes[number], sizes[part]) if indexes else view.packed()
                 known[p.Each(array)] = _as_doubles(found)
         known |= {single: column[part].repeat(sizes[part]) for single, column in columns.items()}
-        given = Given(steps.columns, steps.base, steps.first, known, count=total)
-        return sums(np.broadcast_to(_value(count.guard, given), len(given)), sizes[part])
+        return of(Given(steps.columns, steps.base, steps.first, known, count=total), sizes[part])
 
-    counts: Array = np.concatenate([np.empty(0), *map(of, pieces(sizes))])
-    return counts > 0 if count.is_any else counts
+    found: Array = np.concatenate([np.empty(0), *map(of_part, pieces(sizes))])
+    return found
 
 
 def predicate(formula: ltl.Formula, holds: dict[str, Mask]) -> Mask | np.bool_:

@@ -43,6 +43,7 @@ from ltlc.specification.specification import PropertySpecification, Specificatio
 
 if TYPE_CHECKING:
     from ltlc.assurance.evidence.document import Document
+    from ltlc.monitoring.columns.measuring import Curve, Measuring
     from ltlc.monitoring.guarding.recording import GuardedRecording, Guarding
     from ltlc.monitoring.guarding.report import GuardReport
     from ltlc.monitoring.judging.cutting import Cut, Cutting
@@ -81,6 +82,7 @@ class RunReport:
     is_part: bool = False
     cut: Cut | None = None
     guard: GuardReport | None = None
+    robustness: Mapping[str, Curve] = field(default_factory=dict)
 
     @property
     def exit_code(self) -> int:
@@ -106,7 +108,14 @@ class RunReport:
                 more = violations_text(session, track) if with_all and track.slices is None else ""
                 figures.append(f"{reports.figure(session, track)}{more}\n")
         guarded = "" if self.guard is None else f"\n{self.guard.text(session, with_all)}"
-        return "".join([*figures, reports.summary(session), guarded])
+        return "".join([*figures, reports.summary(session), self._robustness_text(session), guarded])
+
+    def _robustness_text(self, session: Session) -> str:
+        if not self.robustness:
+            return ""
+        from ltlc.monitoring.judging.robustness import robustness_text  # which few ask for
+
+        return robustness_text(session, self.robustness)
 
     def json(self) -> str:
         """The JSON document of `ltlc run`, as text."""
@@ -123,6 +132,11 @@ class RunReport:
                 each.update(violations_report(self.session, track))
                 if self.cut is not None:
                     each["extracts"] = list(self.cut.written[track.property.label])
+            if self.robustness:
+                from ltlc.monitoring.judging.robustness import robustness_report
+
+                for each, curve in zip(document["properties"], self.robustness.values(), strict=True):
+                    each["robustness"] = robustness_report(self.session, curve)
             if self.guard is not None:
                 document["guard"] = self.guard.document(self.session)
         document["is_damaged"] = self.is_damaged
@@ -215,7 +229,7 @@ class Judge:
     and stand in each report before those on the recording. It `finds_all` violations of a property, or the first one.
     The documents of its reports have the SHA-256 of the recording if it is `hashed`, which takes a moment.
     With `evidence` a report has that of its recording. With `cutting`, extracts of recordings are written. With
-    `guarding`, what is judged is what guards let through.
+    `guarding`, what is judged is what guards let through. If it `measures`, reports say by how much properties hold.
     """
 
     compiled: Sequence[Compiled]
@@ -230,6 +244,7 @@ class Judge:
     evidence: Evidence | None = None
     cutting: Cutting | None = None
     guarding: Guarding | None = None
+    measures: bool = False
 
     def prepare(self) -> None:
         """Make what takes other processes, before several of them judge by copies."""
@@ -253,8 +268,9 @@ class Judge:
         whole = self._whole_runs(recording.columns)
         blocks, watch, start = ByBlocks(session, self.prepared, self.prepared_again), Stopwatch(), perf_counter_ns()
         damage, part = None, Part(path, recording, self.reading)
+        measuring = self._measuring(session)
         try:
-            self._run(blocks, whole, path, part, watch, recording.columns, watchers)
+            self._run(blocks, whole, path, part, watch, recording.columns, watchers, measuring)
         except RecordingError as error:
             damage = error.diagnostic
         times = (watch.nanoseconds, perf_counter_ns() - start - watch.nanoseconds)
@@ -285,6 +301,9 @@ class Judge:
             evidence=evidence,
             cut=None if judged is None or self.cutting is None else self.cutting.cut(session, path, name),
             guard=None if guarded is None else guarded.report(part.since, part.until),
+            robustness={}
+            if measuring is None
+            else measuring.curves(session.time if part.until is None else part.until),
             **self._made_of(path),
         )
 
@@ -303,6 +322,13 @@ class Judge:
         from ltlc.monitoring.judging.whole_runs import WholeRuns  # which only evidence needs
 
         return WholeRuns(compiled, self.specification, self._given(columns), self.evidence.kept)
+
+    def _measuring(self, session: Session) -> Measuring | None:
+        if not self.measures:
+            return None
+        from ltlc.monitoring.columns.measuring import Measuring  # which few ask for
+
+        return Measuring(session, self._properties, self.prepared)
 
     def _made_of(self, path: Path) -> dict[str, Any]:
         """The provenance of a report; recordings that were opened in another way are not in files."""
@@ -399,6 +425,7 @@ class Judge:
         watch: Stopwatch,
         columns: Collection[str],
         watchers: Sequence[Watcher],
+        measuring: Measuring | None,
     ) -> None:
         """Take the rows in `part`, which have samples of `columns`; `watch` how long reading takes.
 
@@ -411,6 +438,8 @@ class Judge:
             if self.keep_verdicts and len(block.times):
                 first = block.times[0] if session.time is None else session.time
                 _check_steps(session, int(block.times[-1] - first), path)
+            if measuring is not None:
+                measuring.take(block)
             by_blocks.take(block)
             if whole is not None:
                 whole.take(block)

@@ -1,0 +1,126 @@
+"""Robustness by columns beside rtamt: equal numbers where both can say a property, and how long they take.
+
+    OPENBLAS_NUM_THREADS=1 python -m benchmarks.robustness --peers SITE-PACKAGES [--rows N] [--steps N] [--rounds N]
+
+All is in one process and one run; a figure is the median over rounds that go around in turn, CPU time. rtamt evaluates
+a discrete-time specification over the first `--steps` steps, at 1 Hz, whose numbers have to be those of ltlc; ltlc
+takes all rows. Both start from columns: arrays here, lists there.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from benchmarks.columns import Judged, Prepared, Signals, medians
+from ltlc.inputs.recordings.blocks import Block, Samples
+from ltlc.monitoring.columns.measuring import Measuring
+from ltlc.runtime.session import Session
+
+SECOND = 10**9
+
+
+class Case(NamedTuple):
+    """A property, and what it is in STL, as rtamt reads it."""
+
+    name: str
+    ltlc: str
+    stl: str
+
+
+CASES = (
+    Case("always", "never v > 2", "always(v <= 2)"),
+    Case("response", "always (v > 1.5 implies eventually w < 0.2)", "always((v >= 1.5) implies eventually(w <= 0.2))"),
+    Case("until", "until w > 1.9, always v < 1.9", "(v <= 1.9) until (w >= 1.9)"),
+    Case("within 1 s", "always (v > 1.5 implies eventually w < 0.2 within 1 s)",
+         "always((v >= 1.5) implies eventually[0:1](w <= 0.2))"),
+    Case("within 100 s", "always (v > 1.5 implies eventually w < 0.2 within 100 s)",
+         "always((v >= 1.5) implies eventually[0:100](w <= 0.2))"),
+    Case("for 100 s", "always v < 1.5 for 100 s", "always[0:100](v <= 1.5)"),
+    Case("since", "always (v > 1.5 implies (w > 0.2 since v < 1))",
+         "always((v >= 1.5) implies ((w >= 0.2) since (v <= 1)))"),
+)  # fmt: skip
+
+
+def signals(count: int) -> Signals:
+    """Two slow waves with noise."""
+    i, noise = np.arange(count), np.random.default_rng(1)
+    return {
+        "v": 1 + np.cos(i / 50) + 0.1 * noise.standard_normal(count),
+        "w": 1 + np.cos(i / 50 - 2) + 0.1 * noise.standard_normal(count),
+    }
+
+
+def measured(judged: Judged, columns: Signals) -> Callable[[], Sequence[float]]:
+    """The robustness at each step."""
+    rows = np.arange(len(columns["v"]))
+    block = Block(rows * SECOND, {name: Samples(rows, values) for name, values in columns.items()}, {})
+    specifications = [each.specification for each in judged.compiled]
+
+    def measure() -> Sequence[float]:
+        measuring = Measuring(Session(judged.plan), specifications, judged.prepared)
+        measuring.take(block)
+        [curve] = measuring.curves(int(block.times[-1])).values()
+        assert not curve.reason, curve.reason
+        return curve.margins  # type: ignore[return-value]
+
+    return measure
+
+
+def rtamt_over(case: Case, columns: Signals) -> Callable[[], Sequence[float]]:
+    """The same by rtamt."""
+    import rtamt
+
+    specification = rtamt.StlDiscreteTimeSpecification()
+    for name in (*columns, "out"):
+        specification.declare_var(name, "float")
+    specification.spec = f"out = {case.stl}"
+    specification.parse()
+    data = {"time": list(range(len(columns["v"]))), **{name: values.tolist() for name, values in columns.items()}}
+    return lambda: [margin for _, margin in specification.evaluate(data)]
+
+
+def ready(way: Callable[[], object]) -> Prepared:
+    """Nothing has to be made ready."""
+    return lambda: way
+
+
+def compare(case: Case, rows: int, steps: int, rounds: int) -> bool:
+    """Whether both have the same numbers; with a line that says how long both take."""
+    columns = signals(rows)
+    first = {name: values[:steps] for name, values in columns.items()}
+    judged = Judged([case.ltlc], list(columns))
+    ours, theirs = measured(judged, first)(), rtamt_over(case, first)()
+    is_equal = bool(np.array_equal(np.asarray(ours), np.asarray(theirs)))
+    ways = {"ltlc": ready(measured(judged, columns)), "rtamt": ready(rtamt_over(case, first))}
+    took = medians(ways, rounds)
+    each = {"ltlc": took["ltlc"] / rows, "rtamt": took["rtamt"] / steps}
+    print(
+        f"| {case.name} | {'yes' if is_equal else 'NO'} | {each['ltlc']:.1f} | {each['rtamt']:,.0f} "
+        f"| {each['rtamt'] / each['ltlc']:,.0f} |",
+        flush=True,
+    )
+    return is_equal
+
+
+def main() -> int:
+    """Compare and time all cases; 1 if numbers differ."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--peers", type=Path, required=True, metavar="SITE-PACKAGES")
+    parser.add_argument("--rows", type=int, default=1_000_000)
+    parser.add_argument("--steps", type=int, default=2000)
+    parser.add_argument("--rounds", type=int, default=5)
+    options = parser.parse_args()
+    sys.path.append(str(options.peers))
+    print("| property | equal | ltlc, ns a step | rtamt, ns a step | times |\n|---|---|---|---|---|")
+    found = [compare(case, options.rows, options.steps, options.rounds) for case in CASES]
+    return 0 if all(found) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

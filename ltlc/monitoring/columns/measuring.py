@@ -1,0 +1,161 @@
+"""The margins of a recorded run, gathered block by block beside the session that judges it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ltlc.dataclass import dataclass
+from ltlc.inputs.recordings.blocks import Array, Block, Places
+from ltlc.monitoring.columns.derived import derive
+from ltlc.monitoring.columns.margins import margins_of
+from ltlc.monitoring.columns.prepared import Prepared
+from ltlc.monitoring.columns.robustness import Robustness
+from ltlc.monitoring.columns.series import Columns, Steps, UnsupportedError
+from ltlc.monitoring.columns.timeline import Timeline
+from ltlc.monitoring.columns.values import not_numbers
+from ltlc.runtime.sampling import Derived, Reading, Window
+from ltlc.runtime.session import Session
+from ltlc.runtime.tracking import Track
+from ltlc.semantics.durations import Nanoseconds
+from ltlc.specification.specification import PropertySpecification
+
+PIECE = 1 << 14
+"""So many margins are looked through at a time."""
+
+
+@dataclass(frozen=True, slots=True)
+class Curve:
+    """By how much a property holds on the rest of the run from each of its steps on.
+
+    `times`, in ns, and `margins` have one number for each step, in the order of the run; `margins[0]` is that of the
+    whole run. A margin is in the unit of the values that decide it: positive where the property holds, negative where
+    it is violated, infinite where no comparison of numbers decides it. `decided` has the time and the name of the first
+    comparison with the margin of the whole run. Of a property that cannot be measured there are none, and `reason` says
+    why.
+    """
+
+    times: NDArray[np.int64] = field(default_factory=lambda: np.empty(0, np.int64))
+    margins: NDArray[np.float64] = field(default_factory=lambda: np.empty(0))
+    reason: str = ""
+    decided: tuple[Nanoseconds, str] | None = None
+
+    @property
+    def whole(self) -> float | None:
+        """That of the whole run; None if it did not begin, or cannot be measured."""
+        return float(self.margins[0]) if len(self.margins) else None
+
+
+class _Gathered:
+    """The margins of the atoms of a property at its steps, in parts."""
+
+    def __init__(self, of: PropertySpecification, prepared: Prepared, track: Track, window: Window | None) -> None:
+        self._of = of
+        self._prepared = prepared
+        self._property = track.property
+        self._window = window
+        self._reason = _unmeasured(of)
+        self._times: list[Places] = []
+        self._margins: dict[str, list[Array]] = {atom.name: [] for atom in of.atoms}
+
+    def take(self, columns: Columns, is_first: bool) -> None:
+        """Gather those of a block, which may be the first."""
+        if self._reason or self._window is None:
+            return
+        also = [np.zeros(1, np.int64)] if is_first and self._property.from_session else []
+        try:
+            steps = columns.steps(self._window.inputs, self._window.topics, also, self._property.excused)
+            if len(steps):
+                self._add(steps)
+        except UnsupportedError as error:
+            self._reason = str(error)
+
+    def _add(self, steps: Steps) -> None:
+        mask = not_numbers(self._prepared.guards, steps)
+        valid = slice(None) if mask is None else ~mask
+        found = [margins_of(atom.condition, steps)[valid] for atom in self._of.atoms]
+        self._times.append(steps.times[valid])
+        for parts, margins in zip(self._margins.values(), found, strict=True):
+            parts.append(margins)
+
+    def curve(self, end: Nanoseconds) -> Curve:
+        """What they come to in a run up to `end`."""
+        times = _joined(self._times or [np.empty(0, np.int64)])
+        count = int(times.searchsorted(end, "right"))
+        if self._reason or not count:
+            return Curve(reason=self._reason)
+        line = Timeline(times[:count], end)
+        margins = {name: _joined(parts)[:count] for name, parts in self._margins.items()}
+        try:
+            found = Robustness(line, margins).of(self._of.property)
+        except UnsupportedError as error:
+            return Curve(reason=str(error))
+        curve = np.array(found.at(line.steps))
+        return Curve(line.times, curve, decided=_first_with(abs(float(curve[0])), margins, line.times))
+
+
+def _joined(parts: Sequence[Array]) -> Array:
+    return parts[0] if len(parts) == 1 else np.concatenate(parts)
+
+
+def _first_with(size: float, margins: Mapping[str, Array], times: Places) -> tuple[Nanoseconds, str] | None:
+    """The first of the finite `margins` of this size, on either side of 0."""
+    for start in range(0, len(times) if math.isfinite(size) else 0, PIECE):
+        at = {name: np.flatnonzero(np.abs(each[start : start + PIECE]) == size) for name, each in margins.items()}
+        found = [(int(steps[0]), name) for name, steps in at.items() if len(steps)]
+        if found:
+            step, name = min(found, key=lambda each: each[0])
+            return int(times[start + step]), name
+    return None
+
+
+def _unmeasured(of: PropertySpecification) -> str:
+    """Why there are no margins of a property; empty if there are."""
+    if of.slicing is not None:
+        return "`each`: every id or message has a run of its own"
+    if of.openings():
+        return "values at an opening"
+    if of.messages():
+        return "an age, which is a time"
+    return "a count" if of.counts() else ""
+
+
+class Measuring:
+    """Gathers margins from the blocks of a recording, each before the session takes it."""
+
+    def __init__(
+        self, session: Session, specifications: Sequence[PropertySpecification], prepared: Sequence[Prepared]
+    ) -> None:
+        """Of the properties of the session, which are given in its order."""
+        self._session = session
+        self._readings = [signal for signal in session.plan.signals if isinstance(signal, Reading)]
+        self._derived = [signal for signal in session.plan.signals if isinstance(signal, Derived)]
+        self._definitions = {name: each for of in prepared for name, each in of.definitions.items()}
+        windows = {id(track): window for track, window in session.stepped}
+        self._gathered = {
+            track.property.label: _Gathered(of, needed, track, windows.get(id(track)))
+            for track, of, needed in zip(session.tracks, specifications, prepared, strict=True)
+        }
+
+    def take(self, block: Block) -> None:
+        """Gather those of the rows of `block`, which the session takes next."""
+        if not len(block.times) or self._session.paces is not None:
+            return
+        columns = Columns(block, self._session.sampler, self._readings)
+        derive(columns, self._derived, self._session.sampler, self._definitions)
+        for gathered in self._gathered.values():
+            gathered.take(columns, self._session.began is None)
+        columns.release()
+
+    def curves(self, end: Nanoseconds | None) -> dict[str, Curve]:
+        """Those of all properties by label, in a run up to `end`; None if nothing has come."""
+        if self._session.paces is not None:
+            return dict.fromkeys(self._gathered, Curve(reason="ticks"))
+        if end is None:
+            return dict.fromkeys(self._gathered, Curve())
+        until = min(end, self._session.end)
+        return {label: gathered.curve(until) for label, gathered in self._gathered.items()}

@@ -1,0 +1,51 @@
+"""By how much properties hold in a run, as text and data."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from ltlc.monitoring.columns.measuring import Curve
+from ltlc.runtime.session import Session
+from ltlc.runtime.times import seconds
+
+NO_NUMBERS = "no comparison of numbers decides it"
+NOT_STARTED = "not started"
+
+
+def robustness_report(session: Session, curve: Curve) -> dict[str, Any]:
+    """That of a property in the JSON document of `ltlc run`; its `margin` is null for the `reason` beside it."""
+    if reason := _reason(curve):
+        return {"margin": None, "reason": reason}
+    found: dict[str, Any] = {"margin": curve.whole, "reason": None}
+    if curve.decided is not None:
+        time, comparison = curve.decided
+        offset = {} if session.beginning is None else {"offset": seconds(time - session.beginning)}
+        found |= {"comparison": comparison, "time": seconds(time), "time_ns": time, **offset}
+    return found
+
+
+def robustness_text(session: Session, curves: Mapping[str, Curve]) -> str:
+    """A line for each property, the one that is violated most, or closest to it, first."""
+    ranked = sorted(curves, key=lambda label: math.inf if _reason(curves[label]) else curves[label].whole or 0.0)
+    return "".join(["\nRobustness:\n", *(f"  {label}: {_told(session, curves[label])}\n" for label in ranked)])
+
+
+def _reason(curve: Curve) -> str:
+    """Why there is no number; empty if there is."""
+    if curve.reason:
+        return curve.reason
+    if curve.whole is None:
+        return NOT_STARTED
+    return NO_NUMBERS if math.isinf(curve.whole) else ""
+
+
+def _told(session: Session, curve: Curve) -> str:
+    if reason := _reason(curve):
+        return f"none: {reason}"
+    margin = f"{curve.whole:.6g}"
+    if curve.decided is None:
+        return margin
+    time, comparison = curve.decided
+    return f"{margin} at {session.scale.text(time)}: {comparison}"

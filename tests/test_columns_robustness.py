@@ -1,0 +1,197 @@
+"""By how much properties hold, by columns, beside what the definition says of each instant."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from random import Random
+from typing import Any
+
+import numpy as np
+import pytest
+from columns_support import DECLARATIONS, KINDS, PARTS, Draw, Drawn, blocks, sizes
+from effort import share_of
+from stepping import from_text
+from test_semantics_robustness import measured_run
+
+from ltlc.backends.python.load import load_plan
+from ltlc.base.source import Source
+from ltlc.frontend.language import load_text
+from ltlc.inputs.recordings.rows import Row
+from ltlc.monitoring.columns.measuring import Curve, Measuring
+from ltlc.monitoring.columns.prepared import prepare_all
+from ltlc.monitoring.columns.robustness import Robustness
+from ltlc.monitoring.columns.series import UnsupportedError
+from ltlc.monitoring.columns.session import ByBlocks
+from ltlc.monitoring.columns.timeline import Timeline
+from ltlc.monitoring.later import JudgedTrack
+from ltlc.runtime.properties import MonitoredProperty
+from ltlc.runtime.rows import ByRows
+from ltlc.runtime.session import Session
+from ltlc.runtime.tracking import Observer, Track
+from ltlc.semantics import ltl
+from ltlc.semantics.properties import predicates
+from ltlc.semantics.robustness import held, margin, robustness, with_past
+from ltlc.semantics.timed_atoms import News, atoms_within
+from ltlc.semantics.verdicts import Verdict
+from ltlc.specification.margins import by_how_much
+
+
+@pytest.mark.parametrize("seed", range(share_of(600)))
+def test_columns_have_the_robustness_of_the_definition_at_every_step(seed: int) -> None:
+    property_, steps, until, past, _ = measured_run(seed)
+    news = {each.name for part in predicates(property_) for each in atoms_within(part) if isinstance(each, News)}
+    line = Timeline(np.array([step.time for step in steps]), until)
+    margins = {name: np.array([step.margins[name] for step in steps]) for name in steps[0].margins}
+    run = with_past(held(steps, until, news), past)
+    assert len(run) == line.count
+    try:
+        found = Robustness(line, margins).of(property_)
+    except UnsupportedError:
+        assert "Within(" in repr(property_)
+        return
+    assert found.at(np.arange(line.count)).tolist() == [robustness(run[k:], property_) for k in range(line.count)]
+
+
+class Captured:
+    """Takes the place of letters: the values of a property's inputs at each of its steps."""
+
+    is_settled = False
+
+    def __init__(self) -> None:
+        self.steps: list[tuple[int, Sequence[Any]]] = []
+
+    def step(self, time: int, values: Sequence[Any] | None) -> None:
+        if values is not None:
+            self.steps.append((time, values))
+
+    def hear(self, *_: Any) -> None: ...
+
+    def repeat(self, times: int) -> None:
+        self.steps += [self.steps[-1]] * times
+
+
+def measured(drawn: Drawn) -> tuple[dict[str, Curve], dict[str, Captured], Session, Any]:
+    """The curves of what is drawn, the values that rows see, and the session of the rows."""
+    compiled, specification = from_text(drawn.text)
+    given = {name for part in drawn.parts for row in part for name in row.values} | set(KINDS) | {"v", "w"}
+    given -= set(PARTS) - {"robot.position.x"}
+    plan = load_plan(compiled, specification, given)
+    captured: dict[str, Captured] = {each.specification.label: Captured() for each in compiled}
+
+    def track(property_: MonitoredProperty, keep: bool, observer: Observer | None) -> Track:
+        return JudgedTrack(property_, keep, observer, False, captured[property_.label])  # type: ignore[arg-type]
+
+    reference, prepared = ByRows(Session(plan, make=track)), prepare_all(compiled, specification.source)
+    fast = ByBlocks(Session(plan), prepared)
+    measuring = Measuring(fast.session, [each.specification for each in compiled], prepared)
+    wanted = [s.name for s in plan.signals if s.name in given]
+    for block in blocks(drawn.parts, wanted):
+        for time, names, values, topics in block.rows(set(wanted)):
+            reference.samples(time, names, values, topics)
+        measuring.take(block)
+        fast.take(block)
+    return measuring.curves(fast.session.time), captured, reference.session, compiled
+
+
+@pytest.mark.parametrize("seed", range(share_of(120)))
+def test_curves_begin_with_a_margin_whose_sign_is_the_verdict(seed: int) -> None:
+    drawn = Draw(Random(seed)).drawn()
+    with sizes(Random(seed)):
+        curves, captured, session, _ = measured(drawn)
+    for track in session.tracks:
+        curve = curves[track.property.label]
+        if curve.reason:
+            assert not len(curve.margins)
+            continue
+        assert curve.times.tolist() == [time for time, _ in captured[track.property.label].steps], drawn.text
+        if curve.whole is None:
+            assert track.verdict is Verdict.NOT_STARTED
+        elif curve.whole != 0:
+            holds = track.verdict in (Verdict.SATISFIED, Verdict.PRESUMABLY_SATISFIED)
+            assert (curve.whole > 0) is holds, drawn.text
+
+
+@pytest.mark.parametrize("seed", range(share_of(120)))
+def test_the_margins_of_conditions_are_those_of_the_reference(seed: int) -> None:
+    draw = Draw(Random(seed))
+    lines = [line for line in (f"initially ({draw._atom()})" for _ in range(8)) if is_accepted(line)]
+    text = DECLARATIONS + "".join(f"p{number}: {line}\n" for number, line in enumerate(lines))
+    with sizes(Random(seed)):
+        curves, captured, _, compiled = measured(Drawn(text, draw._cut(draw._rows())))
+    for each in compiled:
+        of = each.specification
+        curve, steps = curves[of.label], captured[of.label].steps
+        [predicate] = [part for part in predicates(of.property) if ltl.atoms(part)]
+        expected = []
+        for _, values in steps:
+            given = dict(zip(of.reads(), values, strict=True))
+            expected.append(margin(predicate, {a.name: by_how_much(a.condition, given) for a in of.atoms}))
+        if not curve.reason:
+            assert curve.margins.tolist() == expected, of.text
+
+
+def is_accepted(line: str) -> bool:
+    return load_text(Source("props.txt", DECLARATIONS + line))[0] is not None
+
+
+@pytest.mark.parametrize(
+    ("condition", "expected"),
+    [
+        ("v < 2", [1, -1, 0]),
+        ("v <= 2", [1, -1, 0]),
+        ("v >{0.5} 2", [-0.5, 1.5, 0.5]),
+        ("v == 3", [-2, 0, -1]),
+        ("v != 3", [2, 0, 1]),
+        ("v =={1.5} 3", [-0.5, 1.5, 0.5]),
+        ("any(scan < 2)", [1, -np.inf, 1.5]),
+        ("all(scan < 2)", [-1, np.inf, -3]),
+        ("count(scan < 2) >= 2", [-1, -2, -1]),
+        ("len(scan) < 2", [-1, 1, 0]),
+        ("flag", [np.inf, np.inf, np.inf]),
+        ('mode == "a"', [np.inf, -np.inf, -np.inf]),
+        ("new v", [np.inf, np.inf, np.inf]),
+    ],
+)
+def test_a_condition_has_the_margin_that_the_documentation_says(condition: str, expected: list[float]) -> None:
+    columns: dict[str, list[Any]] = {
+        "v": [1.0, 3.0, 2.0],
+        "scan": [(1.0, math.nan, 3.0), (math.nan,), (0.5, 5.0)],
+        "flag": [True] * 3,
+        "mode": ["a", "b", "b"],
+    }
+    rows = [Row(k, {name: column[k] for name, column in columns.items()}) for k in range(3)]
+    curves, *_ = measured(Drawn(DECLARATIONS + f"p: initially ({condition})", [rows]))
+    assert curves["p"].margins.tolist() == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        ("p: each i of n: never v > i", "`each`: every id or message has a run of its own"),
+        ("p: after flag, never v > @{v, opening}", "values at an opening"),
+        ("p: always age(v) < 1 s", "an age, which is a time"),
+        ("p: never once v > 1 3 times", "a count"),
+        ("p: within 1 s, after flag, never v > 1", "a bound on temporal operators inside one another"),
+        ("_rate_ = 10\np: never v > 1", "ticks"),
+    ],
+)
+def test_what_cannot_be_measured_has_no_margins_but_a_reason(text: str, reason: str) -> None:
+    rows = [Row(k, {"v": 1.0, "flag": True, "n": 1}) for k in range(2)]
+    curves, *_ = measured(Drawn(DECLARATIONS + text, [rows]))
+    assert (curves["p"].whole, curves["p"].reason) == (None, reason)
+
+
+def test_a_message_without_a_value_has_no_margin() -> None:
+    rows = [Row(k, {"v": value}) for k, value in enumerate([1.0, math.nan, 0.5])]
+    curves, *_ = measured(Drawn(DECLARATIONS + "p: initially v < 2", [rows]))
+    assert (curves["p"].times.tolist(), curves["p"].margins.tolist()) == ([0, 2], [1.0, 1.5])
+
+
+def test_blocks_are_one_run() -> None:
+    rows = [Row(k, {"v": float(k % 7)}) for k in range(40)]
+    text = DECLARATIONS + "p: always (v > 5 implies eventually v < 1 within 2 ns)"
+    whole, *_ = measured(Drawn(text, [rows]))
+    parts, *_ = measured(Drawn(text, [rows[:13], rows[13:14], rows[14:]]))
+    assert whole["p"].margins.tolist() == parts["p"].margins.tolist()
+    assert whole["p"].whole == 1.0

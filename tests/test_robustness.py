@@ -1,0 +1,129 @@
+"""By how much properties hold, as users see it: text, JSON and Python."""
+
+from __future__ import annotations
+
+import base64
+import json
+import zlib
+from pathlib import Path
+
+import numpy as np
+import pytest
+from stepping import from_text
+
+import ltlc
+from ltlc.cli import main
+from ltlc.interfaces.pages.report import PageReport
+from ltlc.monitoring.judging.run import Judge
+
+PROPS = """
+decl speed /speed std_msgs/Float64.data
+decl armed /armed std_msgs/Bool.data
+
+slow: never speed > 2
+calm: never speed > 1 and not armed
+seen: after armed, eventually armed
+late: always age(speed) <= 9 s
+none: eventually @{speed, -9} > 1
+"""
+
+
+@pytest.fixture
+def drive(tmp_path: Path) -> Path:
+    (tmp_path / "props.txt").write_text(PROPS, encoding="utf-8")
+    (tmp_path / "drive.csv").write_text(
+        "time,speed,armed\n10,0.5,true\n11,1.25,false\n12,1.75,true\n", encoding="utf-8"
+    )
+    return tmp_path
+
+
+def ran(folder: Path, *options: str) -> int:
+    return main(["run", str(folder / "props.txt"), str(folder / "drive.csv"), *options])
+
+
+def test_text_ranks_what_is_violated_most_first(drive: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert ran(drive, "--robustness") == 1
+    told = capsys.readouterr().out.partition("\nRobustness:\n")[2]
+    assert told.splitlines() == [
+        "  calm: -0.25 at +1 s: speed > 1",
+        "  slow: 0.25 at +2 s: speed > 2",
+        "  seen: none: no comparison of numbers decides it",
+        "  late: none: an age, which is a time",
+        "  none: none: not started",
+    ]
+
+
+def test_json_has_the_margin_or_why_there_is_none(drive: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    ran(drive, "--robustness", "--format", "json")
+    found = {each["label"]: each["robustness"] for each in json.loads(capsys.readouterr().out)["properties"]}
+    assert found["slow"] == {
+        "margin": 0.25,
+        "reason": None,
+        "comparison": "speed > 2",
+        "time": 12.0,
+        "time_ns": 12 * 10**9,
+        "offset": 2.0,
+    }
+    assert found["seen"] == {"margin": None, "reason": "no comparison of numbers decides it"}
+
+
+def test_without_the_option_nothing_is_measured(drive: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    ran(drive, "--format", "json")
+    assert "robustness" not in capsys.readouterr().out
+    ran(drive)
+    assert "Robustness" not in capsys.readouterr().out
+
+
+def test_a_campaign_ranks_properties_by_their_least_margin(drive: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    other = drive / "other.csv"
+    other.write_text("time,speed,armed\n10,0.5,true\n11,1.875,true\n", encoding="utf-8")
+    summary, results = drive / "summary.html", drive / "results.parquet"
+    assert ran(drive, str(other), "--robustness", "--summary", str(summary), "--results", str(results)) == 1
+    told = capsys.readouterr().out
+    lines = [line.split() for line in told.partition("closest to failing")[2].splitlines()]
+    assert lines[0] == ["least", "margin", "median", "recording"]
+    assert lines[1] == ["calm", "-0.25", "-0.25", str(drive / "drive.csv")]
+    assert lines[2] == ["slow", "0.125", "0.1875", str(other)]
+    assert 'points="0.0,2.0 200.0,12.0"' in summary.read_text(encoding="utf-8")
+    ran(drive, str(other), "--robustness", "--results", str(results), "--format", "json")
+    again = json.loads(capsys.readouterr().out)["summary"]
+    assert again["judged_before"] == 2
+    found = {each["label"]: each.get("robustness") for each in again["properties"]}
+    assert found["slow"] == {"least": 0.125, "recording": str(other), "median": 0.1875, "measured": 2}
+    assert found["late"] is None
+    ran(drive, str(other), "--results", str(results), "--format", "json")
+    assert "robustness" not in capsys.readouterr().out  # which is judged anew, since this is another question
+
+
+def test_the_page_has_a_curve_under_the_verdict(drive: Path) -> None:
+    compiled, specification = from_text(PROPS)
+    page = PageReport(compiled, specification)
+    for measures in (True, False):
+        collected = page.collector()
+        judge = Judge(compiled, specification, keep_trails=True, measures=measures)
+        page.add(judge.judge(drive / "drive.csv", [collected.take]), collected)
+    drawn = page._data.as_json()
+    panels = [timeline["panels"] for timeline in drawn["timelines"]]
+    assert [each[0]["title"] for each in panels[:3]] == ["robustness"] * 3
+    assert "robustness" not in [panel["title"] for each in panels[3:] for panel in each]
+    [line] = panels[0][0]["lines"]
+    blob = zlib.decompress(base64.b64decode(drawn["blobs"][line["values"]["blob"]]))
+    assert np.frombuffer(blob, line["values"]["type"]).tolist() == [0.25, 0.25, 0.25]
+    assert panels[0][0]["limits"] == [{"text": "robustness > 0", "value": 0.0, "reach": 0.0}]
+
+
+def test_python_has_a_margin_for_each_step() -> None:
+    rows = [{"time": 0.1 * k, "robot.velocity": speed} for k, speed in enumerate([1.0, 2.5, 1.5])]
+    curve = ltlc.run("never robot.velocity > 2", rows).robustness["line 1"]
+    assert (str(curve.times.dtype), str(curve.margins.dtype), curve.margins.shape) == ("int64", "float64", (3,))
+    assert curve.times.tolist() == [0, 10**8, 2 * 10**8]
+    assert curve.margins.tolist() == [-0.5, -0.5, 0.5]
+    assert curve.whole == -0.5
+    assert curve.decided == (10**8, "robot.velocity > 2")
+
+
+def test_a_run_that_was_stepped_cannot_be_measured() -> None:
+    monitor = ltlc.monitor("never robot.velocity > 2")
+    monitor.step({"robot.velocity": 1.0}, time=0.0)
+    with pytest.raises(ltlc.UnusableInput, match="to measure them"):
+        _ = monitor.finish().robustness
