@@ -47,6 +47,7 @@ ORDER = {
         "monitoring.measuring",
     ],
     "analysis": ["analysis", "analysis.comparison"],
+    "importing": ["importing"],
     "interfaces": [
         "interfaces",
         *(

@@ -38,14 +38,14 @@ class Pair:
 
 def relate_on_infinite_runs(pair: Pair) -> Related:
     """How the infinite runs of both formulas relate. Raises Contradiction, and NotDecidedError of runs in time."""
-    lasso = lasso_in_time if pair.question.timed else _lasso
+    lasso = lasso_in_time if pair.question.timed else distinguishing_lasso
     left, right = pair.left.formula, pair.right.formula
     left_only, left_is_shortest = lasso(And(left, Not(right)), pair.alphabet)
     right_only, right_is_shortest = lasso(And(right, Not(left)), pair.alphabet)
     return _related(pair, left_only, right_only, True, (left_is_shortest, right_is_shortest))
 
 
-def _lasso(formula: Formula, alphabet: Alphabet) -> tuple[Lasso | None, bool]:
+def distinguishing_lasso(formula: Formula, alphabet: Alphabet) -> tuple[Lasso | None, bool]:
     """A lasso that satisfies `formula`, if there is one, and whether it is as short as any."""
     if not is_satisfiable(formula, alphabet):
         return None, True
@@ -60,12 +60,12 @@ def _lasso(formula: Formula, alphabet: Alphabet) -> tuple[Lasso | None, bool]:
 
 def relate_on_finite_runs(pair: Pair) -> Related:
     """How the finite runs, of one step at least, of both formulas relate. Raises Contradiction."""
-    words = words_in_time if pair.question.timed else _words
+    words = words_in_time if pair.question.timed else distinguishing_words
     left_only, right_only = words([pair.left.formula, pair.right.formula], pair.alphabet)
     return _related(pair, left_only, right_only, False, (True, True))
 
 
-def _words(formulas: Sequence[Formula], alphabet: Alphabet) -> tuple[Word | None, Word | None]:
+def distinguishing_words(formulas: Sequence[Formula], alphabet: Alphabet) -> tuple[Word | None, Word | None]:
     """A shortest word that satisfies only the first of two formulas, and one that satisfies only the second."""
     machines = tuple(words_of(formulas, alphabet))
     left_only = shortest_word(machines, lambda left, right: left and not right)

@@ -20,7 +20,7 @@ from ltlc.inputs.messages.definitions import BadPath, MessageTypes, shipped
 from ltlc.semantics.encodings import EPISODE, Encoding
 from ltlc.specification.specification import Specification
 
-__all__ = ["ReadText", "load", "load_text", "read", "read_source"]
+__all__ = ["ReadText", "load", "load_text", "read", "read_source", "read_text"]
 
 MAX_BYTES = 1_000_000
 """A longer file is not a specification."""
@@ -110,25 +110,31 @@ def _bad_path(source: Source, bad: BadPath) -> Diagnostic:
 
 
 def read_source(path: Path) -> Source | Diagnostic:
-    """The text of the file at `path`, or of standard input, or why it cannot be read."""
-    if path == STDIN:
-        return _source(Path("<stdin>"), sys.stdin.buffer.read(MAX_BYTES + 1))
-    nothing = Source(str(path), "")
-    if _is_recording(path):
+    """The text of the specification at `path`, or on standard input, or why it cannot be read."""
+    if path != STDIN and _is_recording(path):
+        nothing = Source(str(path), "")
         message = f"{path} is a recording, where a specification is needed"
         help = f"give the specification first, then recordings: `ltlc run PROPS {path.name}`"
         return diagnostic("LTL902", nothing, None, message, help=help)
+    return read_text(path)
+
+
+def read_text(path: Path, most: int = MAX_BYTES) -> Source | Diagnostic:
+    """The text of a file of at most so many bytes, or of standard input, whatever its name; or why there is none."""
+    if path == STDIN:
+        return _source(Path("<stdin>"), sys.stdin.buffer.read(most + 1), most)
+    nothing = Source(str(path), "")
     try:
         if path.is_dir():
             return diagnostic("LTL902", nothing, None, f"{path} is a folder, not a file")
         with path.open("rb") as file:
-            data = file.read(MAX_BYTES + 1)
+            data = file.read(most + 1)
     except FileNotFoundError:
         return diagnostic("LTL901", nothing, None, f"there is no file {path}")
     except (OSError, ValueError) as error:
         reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
         return diagnostic("LTL902", nothing, None, f"{path} cannot be read: {reason}")
-    return _source(path, data)
+    return _source(path, data, most)
 
 
 def _is_recording(path: Path) -> bool:
@@ -146,13 +152,11 @@ _OF_RECORDINGS = frozenset(
 """How the names of recordings end."""
 
 
-def _source(path: Path, data: bytes) -> Source | Diagnostic:
+def _source(path: Path, data: bytes, most: int) -> Source | Diagnostic:
     """The text that `data` is, read from `path` and no further than one byte beyond what is allowed."""
     nothing = Source(str(path), "")
-    if len(data) > MAX_BYTES:
-        return diagnostic(
-            "LTL905", nothing, None, f"{path} is longer than {MAX_BYTES} bytes: it is not a specification"
-        )
+    if len(data) > most:
+        return diagnostic("LTL905", nothing, None, f"{path} is longer than {most} bytes: it is not a specification")
     mark = BOM_UTF8 if data.startswith(BOM_UTF8) else b""
     return _decode(path, data.removeprefix(mark), mark)
 

@@ -86,7 +86,7 @@ def _by_field(path: Path, heads: Iterable[str], types: MessageTypes) -> list[Top
             name = "/".join(("", *topic))
             if fields == {("data",)}:
                 found.append(_valued(path, name, f"{name}/data"))
-            elif message := _message(fields, types):
+            elif message := message_with(fields, types):
                 found.append(Topic(name, message, fields=frozenset(map("/".join, fields))))
             else:
                 continue
@@ -94,7 +94,7 @@ def _by_field(path: Path, heads: Iterable[str], types: MessageTypes) -> list[Top
     return [*found, *(Topic(head, "", omitted=_BY_FIELD) for head in left.values())]
 
 
-def _message(fields: set[Steps], types: MessageTypes) -> str | None:
+def message_with(fields: set[Steps], types: MessageTypes) -> str | None:
     """The type that has all of `fields`: one with a recipe, then the smallest; None if none has."""
     wanted = {field for field in fields if field[-1] != "stamp"}  # PlotJuggler has a time as one number
     if all(field[0] == "header" for field in wanted):

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import argparse
 import importlib
+import keyword
 import re
 from collections.abc import Collection
 from typing import Any, NoReturn
@@ -17,6 +18,7 @@ from ltlc.base.revision import version_text
 
 COMMANDS = {
     "new": "write a specification to start with, for the topics of a bag or of `ros2 topic list -t`",
+    "import": "write a specification of FRET, C2PO, NuSMV, rtamt, reelay or HPL in this language, and compare the two",
     "check": "find mistakes in specifications, without running them",
     "format": "write specifications in one canonical layout, in place",
     "build": "make monitors, judge them, and write a ROS 2 node or another target",
@@ -75,4 +77,5 @@ _CHOICE = re.compile(r"invalid choice: '([^']*)' \(choose from (.*)\)")
 
 def module_of(command: str) -> Any:
     """The module of a command, imported when it is first asked for."""
-    return importlib.import_module(f"ltlc.interfaces.commands.{command}")
+    name = f"{command}_" if keyword.iskeyword(command) else command
+    return importlib.import_module(f"ltlc.interfaces.commands.{name}")

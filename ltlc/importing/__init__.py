@@ -1,0 +1,1 @@
+"""Specifications of other tools, written in the language: `ltlc import`."""
