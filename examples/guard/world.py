@@ -101,6 +101,8 @@ def _xml(layout: Layout) -> str:
     return f"""
 <mujoco>
   <option timestep="{TICK / STEPS / 1000}" integrator="implicitfast"/>
+  <visual><headlight ambient="0.5 0.5 0.5"/></visual>
+  <asset><texture type="skybox" builtin="flat" rgb1="1 1 1" rgb2="1 1 1" width="64" height="64"/></asset>
   <worldbody>
     <light pos="2 -3 8" dir="0 0.3 -1"/>
     <geom name="floor" type="box" size="{(layout.floor + 30) / 2} 30 0.1" pos="{(layout.floor - 30) / 2} 0 -0.1"
