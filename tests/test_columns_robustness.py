@@ -47,10 +47,13 @@ def test_columns_have_the_robustness_of_the_definition_at_every_step(seed: int) 
     assert len(run) == line.count
     try:
         found = Robustness(line, margins).of(property_)
+        at_steps = Robustness(line, margins).at_steps(property_)
     except UnsupportedError:
         assert "Within(" in repr(property_)
         return
-    assert found.at(np.arange(line.count)).tolist() == [robustness(run[k:], property_) for k in range(line.count)]
+    expected = [robustness(run[k:], property_) for k in range(line.count)]
+    assert found.at(np.arange(line.count)).tolist() == expected
+    assert at_steps.tolist() == [expected[k] for k in line.steps.tolist()]
 
 
 class Captured:

@@ -91,11 +91,10 @@ class _Gathered:
         line = Timeline(times[:count], end)
         margins = {name: _joined(parts)[:count] for name, parts in self._margins.items()}
         try:
-            found = Robustness(line, margins).of(self._of.property)
+            found = Robustness(line, margins).at_steps(self._of.property)
         except UnsupportedError as error:
             return Curve(reason=str(error))
-        curve = np.array(found.at(line.steps))
-        return Curve(line.times, curve, decided=_first_with(abs(float(curve[0])), margins, line.times))
+        return Curve(line.times, np.array(found), decided=_first_with(abs(float(found[0])), margins, line.times))
 
 
 def _joined(parts: Sequence[Array]) -> Array:

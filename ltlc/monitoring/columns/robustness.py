@@ -44,7 +44,17 @@ from ltlc.semantics.properties import (
     Within,
 )
 from ltlc.semantics.robustness import FALSE, TRUE, margin
-from ltlc.semantics.timed_atoms import Age, Historically, Late, News, Occurred, Once, Previously, Since
+from ltlc.semantics.timed_atoms import (
+    Age,
+    Historically,
+    Late,
+    News,
+    Occurred,
+    Once,
+    Previously,
+    Since,
+    timed_atoms,
+)
 
 Ended = Pieces | None
 """By how much a segment has ended; None: it ends with the run."""
@@ -53,10 +63,39 @@ Ended = Pieces | None
 class Robustness:
     """The robustness of properties on the rest of a run from each instant on, of whose atoms `margins` are at steps."""
 
-    def __init__(self, timeline: Timeline, margins: Mapping[str, Array]) -> None:
+    def __init__(self, timeline: Timeline, margins: Mapping[str, Array], is_at_steps: bool = False) -> None:
+        """If it `is_at_steps`, windows are looked at from steps alone, as if time did not pass between them."""
         self._line = timeline
         self._margins = margins
         self._known: dict[Formula, Pieces] = {}
+        self._is_at_steps = is_at_steps
+
+    def at_steps(self, property_: Property) -> Array:
+        """That of `property_` at each step. Raises UnsupportedError of what cannot be measured.
+
+        The least of what does not fall between steps is at one, so fewer instants are looked at.
+        """
+        match property_:
+            case Not(operand):
+                return -self.at_steps(operand)
+            case And(left, right):
+                return np.minimum(self.at_steps(left), self.at_steps(right))
+            case Or(left, right):
+                return np.maximum(self.at_steps(left), self.at_steps(right))
+            case Implies(left, right):
+                return np.maximum(-self.at_steps(left), self.at_steps(right))
+            case Always(operand) if _does_not(operand, falls=True):
+                return self._from_steps(property_)
+            case Never(operand) if _does_not(operand, falls=False):
+                return self._from_steps(property_)
+            case Within(_, _, 0):
+                return self._from_steps(property_)
+            case _:
+                return self.of(property_).at(self._line.steps)
+
+    def _from_steps(self, property_: Property) -> Array:
+        line = self._line
+        return Robustness(line, self._margins, is_at_steps=True).of(property_).at(line.steps)
 
     def of(self, property_: Property, ended: Ended = None, is_inside: bool = False) -> Pieces:
         """That of `property_`. Raises UnsupportedError of what cannot be measured."""
@@ -195,7 +234,8 @@ class Robustness:
         line = self._line
         inputs = operand.starts if ended is None else together(operand.starts, ended.starts)
         times = line.time(inputs)
-        starts = together(inputs, line.within(line.first_at(times - duration)))
+        moves = line.steps if self._is_at_steps else line.within(line.first_at(times - duration))
+        starts = together(inputs, moves)
         firsts = _pieces_at(inputs, starts)
         ends = times.searchsorted(line.time(starts) + duration, "right")
         if ended is None:
@@ -256,6 +296,28 @@ class Robustness:
         starts, firsts, ends = self._recent(Pieces(inputs, clamps.low), within)
         count = len(inputs)
         return Pieces(starts, over_windows(reverse, count - ends, count - firsts, FALSE))
+
+
+def _does_not(property_: Property, *, falls: bool) -> bool:
+    """Whether the robustness on the rest of the run is known not to fall between two steps; or, not to rise.
+
+    There, nothing changes but that a window reaches further.
+    """
+    match property_:
+        case Now(predicate):
+            return not timed_atoms(predicate)
+        case Not(operand):
+            return _does_not(operand, falls=not falls)
+        case And(left, right) | Or(left, right):
+            return _does_not(left, falls=falls) and _does_not(right, falls=falls)
+        case Implies(left, right):
+            return _does_not(left, falls=not falls) and _does_not(right, falls=falls)
+        case Within(_, Eventually(operand), 0):
+            return falls and _is_local(operand) and _does_not(operand, falls=True)
+        case Within(_, Always(operand) | Never(operand), 0):
+            return not falls and _is_local(operand) and _does_not(operand, falls=True)
+        case _:
+            return False
 
 
 def _is_local(property_: Property) -> bool:

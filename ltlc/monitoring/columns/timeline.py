@@ -165,11 +165,11 @@ def least_of_windows(margins: Array, firsts: Places, ends: Places) -> Array:
 
     Of two halves that overlap, each a power of two long.
     """
-    found, lengths = np.full(len(firsts), TRUE), ends - firsts
-    levels = np.frexp(lengths.astype(np.float64))[1] - 1
+    found = np.full(len(firsts), TRUE)
+    levels = np.frexp((ends - firsts).astype(np.float64))[1] - 1
     for level in range(int(levels.max(initial=-1)) + 1):
         at = np.flatnonzero(levels == level)
         if len(at):
-            found[at] = np.minimum(margins[firsts[at]], margins[ends[at] - (1 << level)])
+            found[at] = np.minimum(margins.take(firsts.take(at)), margins.take(ends.take(at) - (1 << level)))
         margins = np.minimum(margins[: -(1 << level)], margins[1 << level :])
     return found
