@@ -39,15 +39,15 @@ from ltlc.specification.margins import by_how_much
 
 @pytest.mark.parametrize("seed", range(share_of(600)))
 def test_columns_have_the_robustness_of_the_definition_at_every_step(seed: int) -> None:
-    property_, steps, until, past, _ = measured_run(seed)
+    property_, steps, until, past, seen = measured_run(seed)
     news = {each.name for part in predicates(property_) for each in atoms_within(part) if isinstance(each, News)}
     line = Timeline(np.array([step.time for step in steps]), until)
     margins = {name: np.array([step.margins[name] for step in steps]) for name in steps[0].margins}
-    run = with_past(held(steps, until, news), past)
+    run = with_past(held(steps, until, news), past, seen.session)
     assert len(run) == line.count
     try:
-        found = Robustness(line, margins).of(property_)
-        at_steps = Robustness(line, margins).at_steps(property_)
+        measured = Robustness(line, margins, dict.fromkeys(news, seen.session))
+        found, at_steps = measured.of(property_), measured.at_steps(property_)
     except UnsupportedError:
         assert "Within(" in repr(property_)
         return
@@ -173,7 +173,6 @@ def test_a_condition_has_the_margin_that_the_documentation_says(condition: str, 
     [
         ("p: each i of n: never v > i", "`each`: every id or message has a run of its own"),
         ("p: after flag, never v > @{v, opening}", "values at an opening"),
-        ("p: always age(v) < 1 s", "an age, which is a time"),
         ("p: never once v > 1 3 times", "a count"),
         ("p: within 1 s, after flag, never v > 1", "a bound on temporal operators inside one another"),
         ("_rate_ = 10\np: never v > 1", "ticks"),
@@ -198,3 +197,10 @@ def test_blocks_are_one_run() -> None:
     parts, *_ = measured(Drawn(text, [rows[:13], rows[13:14], rows[14:]]))
     assert whole["p"].margins.tolist() == parts["p"].margins.tolist()
     assert whole["p"].whole == 1.0
+
+
+@pytest.mark.parametrize(("text", "expected"), [("age(v) <= 2 ns", np.inf), ("age(v) <= 1 ns", -np.inf)])
+def test_an_age_counts_from_messages_before_the_first_step(text: str, expected: float) -> None:
+    rows = [Row(0, {"flag": True}), Row(5, {"v": 1.0}), Row(7, {"w": 1.0})]
+    curves, *_ = measured(Drawn(DECLARATIONS + f"p: initially ({text} and w < 2)", [rows[:2], rows[2:]]))
+    assert curves["p"].margins.tolist() == [min(expected, 1.0)]

@@ -31,7 +31,7 @@ from ltlc.semantics.properties import (
     predicates,
 )
 from ltlc.semantics.robustness import Measured, Run, held, robustness, with_past
-from ltlc.semantics.timed_atoms import Age, Historically, News, Once, PastAtom, Previously, Since, atoms_within
+from ltlc.semantics.timed_atoms import Historically, News, Once, PastAtom, Previously, Since, atoms_within
 
 P, Q, X, Y = map(Atom, "pqxy")
 INFINITY = math.inf
@@ -135,14 +135,10 @@ def test_at_a_margin_of_0_either_verdict_is_possible(property_: Property, rows: 
 
 
 def measured_run(seed: int) -> tuple[Property, list[Measured], int, tuple[PastAtom, ...], instants.Observation]:
-    """A property in time, and a run with margins of its letters; of a seed whose property asks for no age."""
+    """A property in time, and a run with margins of its letters."""
     draw = Draw(seed)
-    while True:
-        property_ = draw.property()
-        atoms = dict.fromkeys(each for part in predicates(property_) for each in atoms_within(part))
-        if not any(isinstance(each, Age) for each in atoms):
-            break
-    seen = draw.run(most=4)
+    property_, seen = draw.property(), draw.run(most=4)
+    atoms = dict.fromkeys(each for part in predicates(property_) for each in atoms_within(part))
     news = {each.name for each in atoms if isinstance(each, News)}
 
     def margins(letter: frozenset[str]) -> Mapping[str, float]:
@@ -159,6 +155,7 @@ def test_in_time_the_sign_is_the_verdict_on_instants(seed: int) -> None:
     property_, steps, until, past, seen = measured_run(seed)
     news = [each for part in predicates(property_) for each in atoms_within(part) if isinstance(each, News)]
     word = instants.with_past(instants.instants(seen.steps, until, news), past, seen.session)
-    found = robustness(with_past(held(steps, until, {each.name for each in news}), past), property_)
+    run = with_past(held(steps, until, {each.name for each in news}), past, seen.session)
+    found = robustness(run, property_)
     assert found != 0
     assert (found > 0) is satisfies(word, property_)

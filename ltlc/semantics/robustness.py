@@ -36,7 +36,7 @@ from ltlc.semantics.properties import (
     Until,
     Within,
 )
-from ltlc.semantics.timed_atoms import Historically, Once, PastAtom, Previously, Since
+from ltlc.semantics.timed_atoms import Age, Historically, Once, PastAtom, Previously, Since
 
 TRUE, FALSE = math.inf, -math.inf
 
@@ -181,20 +181,20 @@ def held(steps: Sequence[Measured], until: Nanoseconds, news: Collection[str] = 
     )
 
 
-def with_past(run: Run, atoms: Iterable[PastAtom]) -> Run:
+def with_past(run: Run, atoms: Iterable[PastAtom], session: Nanoseconds | None = None) -> Run:
     """`run` with the margin of each of `atoms`, those that decide an atom before it.
 
-    Raises TypeError of an age and a count, which are decided by times and numbers.
+    The session began at `session`, by default at the first instant. Raises TypeError of a count.
     """
     for atom in atoms:
-        found = [_looking_back(atom, run, n) for n in range(len(run))]
+        found = [_looking_back(atom, run, n, session) for n in range(len(run))]
         run = tuple(
             replace(each, margins={**each.margins, atom.name: number}) for each, number in zip(run, found, strict=True)
         )
     return run
 
 
-def _looking_back(atom: PastAtom, run: Run, n: int) -> float:
+def _looking_back(atom: PastAtom, run: Run, n: int, session: Nanoseconds | None) -> float:
     """The margin of `atom` at the instant n, as `instants.holds_at` has it."""
 
     def of(predicate: Formula) -> Callable[[int], float]:
@@ -218,5 +218,9 @@ def _looking_back(atom: PastAtom, run: Run, n: int) -> float:
                 for k in range(n + 1)
                 if within is None or ago(k) <= within
             )
+        case Age(_, news, most):
+            arrivals = [run[k].time for k in range(n + 1) if of(news)(k) > 0]
+            began = run[0].time if session is None else session
+            return TRUE if run[n].time - (arrivals[-1] if arrivals else began) <= most else FALSE
         case _:
             raise TypeError(f"not a margin: {atom!r}")

@@ -8,6 +8,8 @@ from importlib.resources import files
 from pathlib import PurePath
 from typing import Any
 
+import numpy as np
+
 from ltlc import __version__
 from ltlc.analysis.explanation import Explanation
 from ltlc.backends.templates import template
@@ -173,8 +175,8 @@ class PageReport:
         }
 
     def _robustness(self, curve: Curve | None) -> Series | None:
-        """What is drawn of a curve, if there is one."""
-        if curve is None or not len(curve.times):
+        """What is drawn of a curve, if it has numbers."""
+        if curve is None or not np.isfinite(curve.margins).any():
             return None
         series = Series(self._most, [0.0])
         series.add(curve.times, curve.margins)

@@ -61,6 +61,8 @@ class _Gathered:
         self._reason = _unmeasured(of)
         self._times: list[Places] = []
         self._margins: dict[str, list[Array]] = {atom.name: [] for atom in of.atoms}
+        self._heard = {news: of.arrival(news).signal.name for news in of.messages()}
+        self._since: dict[str, Nanoseconds] = {}
 
     def take(self, columns: Columns, is_first: bool) -> None:
         """Gather those of a block, which may be the first."""
@@ -69,21 +71,31 @@ class _Gathered:
         also = [np.zeros(1, np.int64)] if is_first and self._property.from_session else []
         try:
             steps = columns.steps(self._window.inputs, self._window.topics, also, self._property.excused)
+            if not self._times:
+                self._hear(steps)
             if len(steps):
                 self._add(steps)
         except UnsupportedError as error:
             self._reason = str(error)
 
+    def _hear(self, steps: Steps) -> None:
+        """Messages come before the first of `steps`, from which ages count."""
+        limit = steps.row(0) if len(steps) else steps.columns.count
+        last = {news: steps.columns.last_heard(signal, limit) for news, signal in self._heard.items()}
+        self._since |= {news: int(steps.columns.times[row]) for news, row in last.items() if row is not None}
+
     def _add(self, steps: Steps) -> None:
         mask = not_numbers(self._prepared.guards, steps)
+        if mask is not None and self._heard:
+            raise UnsupportedError("messages that make no step, from which ages count")
         valid = slice(None) if mask is None else ~mask
         found = [margins_of(atom.condition, steps)[valid] for atom in self._of.atoms]
         self._times.append(steps.times[valid])
         for parts, margins in zip(self._margins.values(), found, strict=True):
             parts.append(margins)
 
-    def curve(self, end: Nanoseconds) -> Curve:
-        """What they come to in a run up to `end`."""
+    def curve(self, began: Nanoseconds, end: Nanoseconds) -> Curve:
+        """What they come to in a run up to `end`, in a session that `began` then."""
         times = _joined(self._times or [np.empty(0, np.int64)])
         count = int(times.searchsorted(end, "right"))
         if self._reason or not count:
@@ -91,7 +103,9 @@ class _Gathered:
         line = Timeline(times[:count], end)
         margins = {name: _joined(parts)[:count] for name, parts in self._margins.items()}
         try:
-            found = Robustness(line, margins).at_steps(self._of.property)
+            found = Robustness(line, margins, dict.fromkeys(self._heard, began) | self._since).at_steps(
+                self._of.property
+            )
         except UnsupportedError as error:
             return Curve(reason=str(error))
         return Curve(line.times, np.array(found), decided=_first_with(abs(float(found[0])), margins, line.times))
@@ -118,8 +132,6 @@ def _unmeasured(of: PropertySpecification) -> str:
         return "`each`: every id or message has a run of its own"
     if of.openings():
         return "values at an opening"
-    if of.messages():
-        return "an age, which is a time"
     return "a count" if of.counts() else ""
 
 
@@ -154,7 +166,8 @@ class Measuring:
         """Those of all properties by label, in a run up to `end`; None if nothing has come."""
         if self._session.paces is not None:
             return dict.fromkeys(self._gathered, Curve(reason="ticks"))
-        if end is None:
+        began = self._session.began
+        if end is None or began is None:
             return dict.fromkeys(self._gathered, Curve())
         until = min(end, self._session.end)
-        return {label: gathered.curve(until) for label, gathered in self._gathered.items()}
+        return {label: gathered.curve(began, until) for label, gathered in self._gathered.items()}

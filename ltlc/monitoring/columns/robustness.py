@@ -12,6 +12,7 @@ from typing import assert_never
 import numpy as np
 
 from ltlc.inputs.recordings.blocks import Array
+from ltlc.monitoring.columns.bits import union
 from ltlc.monitoring.columns.margins import combined
 from ltlc.monitoring.columns.series import UnsupportedError
 from ltlc.monitoring.columns.timeline import (
@@ -63,10 +64,20 @@ Ended = Pieces | None
 class Robustness:
     """The robustness of properties on the rest of a run from each instant on, of whose atoms `margins` are at steps."""
 
-    def __init__(self, timeline: Timeline, margins: Mapping[str, Array], is_at_steps: bool = False) -> None:
-        """If it `is_at_steps`, windows are looked at from steps alone, as if time did not pass between them."""
+    def __init__(
+        self,
+        timeline: Timeline,
+        margins: Mapping[str, Array],
+        since: Mapping[str, Nanoseconds],
+        is_at_steps: bool = False,
+    ) -> None:
+        """Before the first message at a step, ages count from `since`, by the name of their news.
+
+        If it `is_at_steps`, windows are looked at from steps alone, as if time did not pass between them.
+        """
         self._line = timeline
         self._margins = margins
+        self._since_when = since
         self._known: dict[Formula, Pieces] = {}
         self._is_at_steps = is_at_steps
 
@@ -94,8 +105,8 @@ class Robustness:
                 return self.of(property_).at(self._line.steps)
 
     def _from_steps(self, property_: Property) -> Array:
-        line = self._line
-        return Robustness(line, self._margins, is_at_steps=True).of(property_).at(line.steps)
+        coarse = Robustness(self._line, self._margins, self._since_when, is_at_steps=True)
+        return coarse.of(property_).at(self._line.steps)
 
     def of(self, property_: Property, ended: Ended = None, is_inside: bool = False) -> Pieces:
         """That of `property_`. Raises UnsupportedError of what cannot be measured."""
@@ -167,10 +178,10 @@ class Robustness:
                 return self._since(self._predicate(kept), self._predicate(start), within)
             case News(name):
                 return self._news(self._margins[name])
-            case Age() | Late():
-                raise UnsupportedError("an age, which is a time")
-            case Occurred():
-                raise UnsupportedError("a count")
+            case Age(_, news, most):
+                return self._age(news.name, most)
+            case Occurred() | Late():
+                raise TypeError(f"not a margin: {atom!r}")
             case _:
                 return Pieces(self._line.steps, self._margins[atom.name])
 
@@ -180,6 +191,15 @@ class Robustness:
         at = Pieces(self._line.steps, margins).at(starts)
         is_step = self._line.steps[self._line.steps.searchsorted(starts, "right") - 1] == starts
         return Pieces(starts, np.where(is_step, at, FALSE))
+
+    def _age(self, news: str, most: Nanoseconds) -> Pieces:
+        """Whether the last message is at most so long ago."""
+        line, comes, since = self._line, self._margins[news] > 0, self._since_when[news]
+        arrivals, times = line.steps[comes], line.times[comes]
+        late = line.first_at(np.append(times + line.clipped(most), since + most) + 1)
+        starts = line.within(union([np.zeros(1, np.int64), arrivals, late]))
+        last = np.insert(times, 0, since).take(arrivals.searchsorted(starts, "right"))
+        return Pieces(starts, np.where(line.time(starts) - last <= most, TRUE, FALSE))
 
     def _always(self, operand: Pieces, ended: Ended) -> Pieces:
         if ended is None:
