@@ -143,6 +143,7 @@ class Measuring:
     ) -> None:
         """Of the properties of the session, which are given in its order."""
         self._session = session
+        self._began: Nanoseconds | None = None
         self._readings = [signal for signal in session.plan.signals if isinstance(signal, Reading)]
         self._derived = [signal for signal in session.plan.signals if isinstance(signal, Derived)]
         self._definitions = {name: each for of in prepared for name, each in of.definitions.items()}
@@ -159,15 +160,15 @@ class Measuring:
         columns = Columns(block, self._session.sampler, self._readings)
         derive(columns, self._derived, self._session.sampler, self._definitions)
         for gathered in self._gathered.values():
-            gathered.take(columns, self._session.began is None)
+            gathered.take(columns, self._began is None)
+        self._began = int(block.times[0]) if self._began is None else self._began
         columns.release()
 
     def curves(self, end: Nanoseconds | None) -> dict[str, Curve]:
         """Those of all properties by label, in a run up to `end`; None if nothing has come."""
         if self._session.paces is not None:
             return dict.fromkeys(self._gathered, Curve(reason="ticks"))
-        began = self._session.began
-        if end is None or began is None:
+        if end is None or self._began is None:
             return dict.fromkeys(self._gathered, Curve())
         until = min(end, self._session.end)
-        return {label: gathered.curve(began, until) for label, gathered in self._gathered.items()}
+        return {label: gathered.curve(self._began, until) for label, gathered in self._gathered.items()}
