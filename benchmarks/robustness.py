@@ -60,10 +60,9 @@ def measured(judged: Judged, columns: Signals) -> Callable[[], Sequence[float]]:
     """The robustness at each step."""
     rows = np.arange(len(columns["v"]))
     block = Block(rows * SECOND, {name: Samples(rows, values) for name, values in columns.items()}, {})
-    specifications = [each.specification for each in judged.compiled]
 
     def measure() -> Sequence[float]:
-        measuring = Measuring(Session(judged.plan), specifications, judged.prepared)
+        measuring = Measuring(Session(judged.plan), judged.compiled, judged.prepared)
         measuring.take(block)
         [curve] = measuring.curves(int(block.times[-1])).values()
         assert not curve.reason, curve.reason

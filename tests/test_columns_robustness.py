@@ -87,7 +87,7 @@ def measured(drawn: Drawn) -> tuple[dict[str, Curve], dict[str, Captured], Sessi
 
     reference, prepared = ByRows(Session(plan, make=track)), prepare_all(compiled, specification.source)
     fast = ByBlocks(Session(plan), prepared)
-    measuring = Measuring(fast.session, [each.specification for each in compiled], prepared)
+    measuring = Measuring(fast.session, compiled, prepared)
     wanted = [s.name for s in plan.signals if s.name in given]
     for block in blocks(drawn.parts, wanted):
         for time, names, values, topics in block.rows(set(wanted)):

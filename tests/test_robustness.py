@@ -111,6 +111,11 @@ def test_the_page_has_a_curve_under_the_verdict(drive: Path) -> None:
     assert panels[0][0]["limits"] == [{"text": "robustness > 0", "value": 0.0, "reach": 0.0}]
 
 
+def test_another_encoding_is_not_measured(drive: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    ran(drive, "--robustness", "--encoding", "dwyer")
+    assert "  slow: none: the encoding `dwyer`\n" in capsys.readouterr().out
+
+
 def test_python_has_a_margin_for_each_step() -> None:
     rows = [{"time": 0.1 * k, "robot.velocity": speed} for k, speed in enumerate([1.0, 2.5, 1.5])]
     curve = ltlc.run("never robot.velocity > 2", rows).robustness["line 1"]

@@ -9,6 +9,7 @@ from dataclasses import field
 import numpy as np
 from numpy.typing import NDArray
 
+from ltlc.compiler import Compiled
 from ltlc.dataclass import dataclass
 from ltlc.inputs.recordings.blocks import Array, Block, Places
 from ltlc.monitoring.columns.derived import derive
@@ -22,7 +23,7 @@ from ltlc.runtime.sampling import Derived, Reading, Window
 from ltlc.runtime.session import Session
 from ltlc.runtime.tracking import Track
 from ltlc.semantics.durations import Nanoseconds
-from ltlc.specification.specification import PropertySpecification
+from ltlc.semantics.encodings import EPISODE
 
 PIECE = 1 << 14
 """So many margins are looked through at a time."""
@@ -53,12 +54,12 @@ class Curve:
 class _Gathered:
     """The margins of the atoms of a property at its steps, in parts."""
 
-    def __init__(self, of: PropertySpecification, prepared: Prepared, track: Track, window: Window | None) -> None:
-        self._of = of
+    def __init__(self, compiled: Compiled, prepared: Prepared, track: Track, window: Window | None) -> None:
+        self._of = of = compiled.specification
         self._prepared = prepared
         self._property = track.property
         self._window = window
-        self._reason = _unmeasured(of)
+        self._reason = _unmeasured(compiled)
         self._times: list[Places] = []
         self._margins: dict[str, list[Array]] = {atom.name: [] for atom in of.atoms}
         self._heard = {news: of.arrival(news).signal.name for news in of.messages()}
@@ -126,8 +127,11 @@ def _first_with(size: float, margins: Mapping[str, Array], times: Places) -> tup
     return None
 
 
-def _unmeasured(of: PropertySpecification) -> str:
+def _unmeasured(compiled: Compiled) -> str:
     """Why there are no margins of a property; empty if there are."""
+    of = compiled.specification
+    if compiled.encoding.name != EPISODE.name:
+        return f"the encoding `{compiled.encoding.name}`"
     if of.slicing is not None:
         return "`each`: every id or message has a run of its own"
     if of.openings():
@@ -138,9 +142,7 @@ def _unmeasured(of: PropertySpecification) -> str:
 class Measuring:
     """Gathers margins from the blocks of a recording, each before the session takes it."""
 
-    def __init__(
-        self, session: Session, specifications: Sequence[PropertySpecification], prepared: Sequence[Prepared]
-    ) -> None:
+    def __init__(self, session: Session, compiled: Sequence[Compiled], prepared: Sequence[Prepared]) -> None:
         """Of the properties of the session, which are given in its order."""
         self._session = session
         self._began: Nanoseconds | None = None
@@ -150,7 +152,7 @@ class Measuring:
         windows = {id(track): window for track, window in session.stepped}
         self._gathered = {
             track.property.label: _Gathered(of, needed, track, windows.get(id(track)))
-            for track, of, needed in zip(session.tracks, specifications, prepared, strict=True)
+            for track, of, needed in zip(session.tracks, compiled, prepared, strict=True)
         }
 
     def take(self, block: Block) -> None:

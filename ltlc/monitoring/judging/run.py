@@ -328,7 +328,7 @@ class Judge:
             return None
         from ltlc.monitoring.columns.measuring import Measuring  # which few ask for
 
-        return Measuring(session, self._properties, self.prepared)
+        return Measuring(session, self.compiled, self.prepared)
 
     def _made_of(self, path: Path) -> dict[str, Any]:
         """The provenance of a report; recordings that were opened in another way are not in files."""
