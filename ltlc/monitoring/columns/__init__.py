@@ -27,4 +27,7 @@ that the next change can be looked for ahead (`kept`). Arrays are held by number
 looked at once (`arrays`). A property of each id is followed over the messages of one id after the other, as if they
 were one run (`slices`). What columns cannot do exactly raises `UnsupportedError`: these properties go row by row in
 this block, and `ltlc run --timing` says so.
+
+By how much properties hold is computed beside all this, from the same samples (`measuring`): the margins of conditions
+(`margins`), and of these that of the property, piece by piece (`robustness`, `timeline`).
 """
