@@ -6,10 +6,11 @@ import json
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
-from ros_support import emitted_text, inside, own_domain, wait_until
+from ros_support import emitted_text, inside, own_domain
 
 from ltlc.assurance.programs import load
 
@@ -34,7 +35,6 @@ class Handed:
         self.left: list[bytes] = []
         (way,) = self.watch._commands.ways.values()
         way.pass_on = self.left.append
-        wait_until(lambda: self.watch._commands.are_settled, "the guard may begin")
 
     def hand(self, topic: str, data: bytes) -> None:
         self.listeners[topic](data, {"received_timestamp": time.time_ns(), "publication_sequence_number": None})
@@ -53,9 +53,10 @@ class Handed:
 def handed(tmp_path: Path) -> Iterator[Callable[..., Handed]]:
     import rclpy
 
-    def make(text: str = GUARD) -> Handed:
+    def make(text: str = GUARD, settling: float = 0.0) -> Handed:
         names = load(emitted_text(text), "watch")
         names["import_ros"]()
+        names["Commands"].SETTLING = settling
         return Handed(names, tmp_path)
 
     with own_domain(tmp_path):
@@ -103,6 +104,28 @@ def test_a_command_that_waits_has_all_that_was_received_looked_for(handed: Calla
 
     one.watch.attend(let_in)
     assert one.deeds == [("changed", "it would violate `slow`")]
+
+
+def test_nothing_leaves_before_other_publishers_have_been_looked_for(handed: Callable[..., Handed]) -> None:
+    one = handed(settling=1e9)
+    one.hand("/near", is_near(False))
+    one.hand("/raw", twist(1.0))
+    one.attend()
+    assert one.left == []
+    assert one.deeds == [("held_back", "it is too early")]
+
+
+def test_the_log_does_not_repeat_what_is_done_for_the_same_reason(handed: Callable[..., Handed]) -> None:
+    one = handed()
+    logged: list[str] = []
+    one.watch._deeds._node.get_logger = lambda: SimpleNamespace(warning=logged.append, error=logged.append)
+    one.hand("/near", is_near(True))
+    for _ in range(3):
+        one.hand("/raw", twist(1.0))
+        one.attend()
+    assert len(one.deeds) == 3
+    (line,) = logged
+    assert line.endswith("changed speed = 1.0 to `stop`: it would violate `slow`")
 
 
 @pytest.mark.parametrize(("data", "reason"), [(b"", "it is malformed"), (twist, "it has no value")])
