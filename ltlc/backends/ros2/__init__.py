@@ -55,7 +55,7 @@ def context(
         "source": prose(source.name),
         "version": __version__,
         "overview": [line for c in compiled for line in overview(c)],
-        "usage": template(__name__, "usage.txt.jinja").render(),
+        "usage": template(__name__, "usage.txt.jinja").render(guards=guards),
         "plan": plan_code(compiled, specification, taken=taken, most_ids=MOST_IDS, guards=guards).rstrip("\n"),
         "readers": readers,
         "topics_to_read": "\n".join(topics),

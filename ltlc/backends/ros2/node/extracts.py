@@ -71,8 +71,9 @@ class Extracts:
         clock: RosTime,
         labels: Sequence[str],
         listeners: Sequence[Listener],
+        sent: Sequence[str],
     ) -> None:
-        """Keep what `listeners` hear: all of it, unless topics are named."""
+        """Keep what `listeners` hear and what is `sent`, unless topics are named."""
         self.have_failed = False
         self._node, self._cut, self._clock = node, cut, clock
         self._names = dict(zip(labels, topic_names(labels), strict=True))
@@ -87,7 +88,8 @@ class Extracts:
         for listener in listeners:
             if not names or listener.full_name in names:
                 self._keep(listener)
-        self._missing = [name for name in names if name not in self._listeners]
+        wanted = names or sent
+        self._missing = [name for name in wanted if name not in self._listeners]
 
     def _keep(self, listener: Listener) -> None:
         self._listeners[listener.full_name] = listener

@@ -108,9 +108,11 @@ class Watch:
         self.most_waiting = Listener.DEPTH * len(topics)
         labels = [each.label for each in plan.properties]
         cut = options.cut
-        self._extracts = (
-            Extracts(node, cut, self._clock, labels, self._listeners) if cut else None
-        )
+        self._extracts = None
+        if cut:
+            outs = [way.full_name for way in self._commands.ways.values()]
+            heard = self._listeners
+            self._extracts = Extracts(node, cut, self._clock, labels, heard, outs)
         self._is_incomplete = self._has_failed = False
         self._began = time.monotonic()
         self._discovered = self._began + self.DISCOVERY
