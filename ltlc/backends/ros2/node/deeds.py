@@ -46,7 +46,7 @@ class Deeds:
         if deed.action is Action.PASSED:
             return None
         self._log(deed, session)
-        head = {"guard": " ".join(deed.outs), "action": deed.action.value}
+        head = {"guards": list(deed.outs), "action": deed.action.value}
         line = json.dumps({**head, **deed_report(deed, None)})
         self._publisher.publish(String(data=line))
         return line
