@@ -229,6 +229,7 @@ def test_a_node_that_was_stopped_over_a_deadline_has_lost_and_lets_nothing_forbi
     drive.network.wait_until(lambda: "lost" in drive.network.message("watch_monitor: guard of /out"), "a diagnosis")
     assert drive.node.end() == 1
     assert guard_of(drive)["counts"]["lost"] == 1
+    assert f"guard of /out, +400 s: lost: {why}\n" in drive.node.log
 
 
 def test_what_was_commanded_while_a_node_was_stopped_is_decided_by_what_it_knows(drive: Drive) -> None:
