@@ -27,7 +27,6 @@ from ltlc.runtime.watching import Watching
 LEASE = 0.5
 """For how many seconds who listens to a guard may take it to be alive."""
 
-
 UNNAMED = "_NODE_NAME_UNKNOWN_"
 """What a node is called as long as only its publisher has been found."""
 
@@ -42,7 +41,7 @@ class CommandListener(Listener):
 class Way:
     """The way of commands from the topic `of.raw` to the topic `of.out`.
 
-    sampler, names: how samples are kept, and those that a message on OUT has
+    values: what the fallbacks say, by their names
     waiting: commands that have come, with what they say, None if malformed
     bypasses: who else publishes on OUT
     """
@@ -119,8 +118,8 @@ class Way:
     def remarks(self) -> list[str]:
         """What is wrong, or may be, with what comes in and what leaves."""
         others = " and ".join(sorted(set(self.bypasses)))
-        beside = [f"{others} publishes on {self.full_name}, too"] if others else []
-        return [*self.listener.remarks, *beside]
+        beside = f"{self.full_name} is also published by {others}"
+        return [*self.listener.remarks, *([beside] if others else [])]
 
 
 def quality() -> QoSProfile:
@@ -258,14 +257,14 @@ class Commands:
         found = []
         for way in self.ways.values():
             for name in way.look(is_due):
-                what = f"{name} publishes on {way.full_name}, too"
+                what = f"{way.full_name} is also published by {name}"
                 if not self._has_sent:
                     raise UnusableError(
-                        f"{what}: what it sends would not be guarded; "
+                        f"{what}, which would not be guarded: "
                         f"have it publish on {way.listener.full_name}"
                     )
                 self.is_bypassed = True
-                found.append(f"{what}: what it sends is not guarded")
+                found.append(f"{what}, which is not guarded")
         return found
 
     @property

@@ -221,14 +221,15 @@ class Watch:
         waiting, self._waiting = self._waiting, []
         if len(waiting) > 1:
             waiting.sort(key=itemgetter(0, 1))
+        has_guards = bool(self._commands.ways)
         self._commands.act(now)
         for time_, _, topic, values in waiting:
             self._pulse.beat()
-            at = min(max(time_ or now, self._session.time or 0), now)
-            if self._commands.ways:  # a run of guards is theirs, by when they take
-                at = now
+            # The run of guards is theirs: by when they take a message.
+            received = min(max(time_ or now, self._session.time or 0), now)
+            at = now if has_guards else received
             self._take(at, topic, values)
-            if self._commands.ways:
+            if has_guards:
                 self._commands.hear(at, topic, self._samples(topic, values))
         self._commands.let_through(now)
 
@@ -262,9 +263,8 @@ class Watch:
         del self._waiting[: -self.KEPT]
         others = self._news - self._commands.ways.keys()
         heard = all(self._session.messages[topic] for topic in others)
-        if now == 0 or not (heard or time.monotonic() >= self._discovered):
-            return False
-        if not self._commands.are_settled:
+        may_begin = heard or time.monotonic() >= self._discovered
+        if now == 0 or not (may_begin and self._commands.are_settled):
             return False
         self._has_begun = True
         if self._news:
