@@ -310,11 +310,32 @@ def test_what_no_guard_can_do_is_refused(
     assert node.log == f"watch_monitor: {reason}\n"
 
 
-def test_what_leaves_shows_that_the_guard_lives(drive: Drive) -> None:
-    from rclpy.qos import DurabilityPolicy, LivelinessPolicy, ReliabilityPolicy
+def test_what_leaves_shows_that_the_guard_lives_and_its_silence_that_it_hangs(drive: Drive) -> None:
+    from geometry_msgs.msg import Twist
+    from rclpy.duration import Duration
+    from rclpy.event_handler import SubscriptionEventCallbacks
+    from rclpy.qos import DurabilityPolicy, LivelinessPolicy, QoSProfile, ReliabilityPolicy
 
+    drive.network.wait_until(lambda: drive.network.node.count_publishers("/out"), "the publisher")
     (found,) = drive.network.node.get_publishers_info_by_topic("/out")
-    profile = found.qos_profile
-    assert profile.liveliness == LivelinessPolicy.MANUAL_BY_TOPIC
-    assert profile.liveliness_lease_duration.nanoseconds == 5 * 10**8
-    assert (profile.reliability, profile.durability) == (ReliabilityPolicy.RELIABLE, DurabilityPolicy.VOLATILE)
+    offered = found.qos_profile
+    assert offered.liveliness == LivelinessPolicy.MANUAL_BY_TOPIC
+    assert offered.liveliness_lease_duration.nanoseconds == 5 * 10**8
+    assert (offered.reliability, offered.durability) == (ReliabilityPolicy.RELIABLE, DurabilityPolicy.VOLATILE)
+    alive: list[int] = []
+    drive.network.node.create_subscription(
+        Twist,
+        "/out",
+        lambda _: None,
+        QoSProfile(
+            depth=1,
+            liveliness=LivelinessPolicy.MANUAL_BY_TOPIC,
+            liveliness_lease_duration=Duration(seconds=1),
+        ),
+        event_callbacks=SubscriptionEventCallbacks(liveliness=lambda event: alive.append(event.alive_count)),
+    )
+    drive.network.wait_until(lambda: alive[-1:] == [1], "a guard that lives")
+    drive.node.pause()
+    drive.network.wait_until(lambda: alive[-1:] == [0], "a guard that hangs")
+    drive.node.resume()
+    drive.network.wait_until(lambda: alive[-1:] == [1], "a guard that lives again")
