@@ -30,7 +30,8 @@ def frame(world: World) -> np.ndarray:
     options.flags[mujoco.mjtVisFlag.mjVIS_RANGEFINDER] = False
     with mujoco.Renderer(world.model, HEIGHT, WIDTH) as renderer:
         renderer.update_scene(world.data, camera, options)
-        return renderer.render()
+        pixels: np.ndarray = renderer.render()
+    return pixels
 
 
 def png(pixels: np.ndarray) -> bytes:

@@ -30,8 +30,6 @@ TIMEOUT = 0.5
 
 WHEEL_RADIUS = 0.1
 WHEEL_DISTANCE = 0.4
-MOVING = 0.02
-"""A robot that is faster moves, in m/s."""
 
 
 @dataclass(frozen=True)
@@ -202,11 +200,8 @@ class World:
         self._obeys[topic](values)
 
     def _turn_wheels(self, values: Mapping[str, object]) -> None:
-        self._twist, self._told, self._target = (
-            (_number(values, "linear/x"), _number(values, "angular/z")),
-            self.time,
-            None,
-        )
+        self._twist = _number(values, "linear/x"), _number(values, "angular/z")
+        self._told, self._target = self.time, None
 
     def _swing(self, values: Mapping[str, object]) -> None:
         self.data.ctrl[2] = _number(values, "data")
