@@ -24,6 +24,9 @@ from ltlc.runtime.session import Session
 
 SECOND = 10**9
 
+ROWS = 65_536
+"""A block of a recording has so many."""
+
 
 class Case(NamedTuple):
     """A property, and what it is in STL, as rtamt reads it."""
@@ -56,15 +59,22 @@ def signals(count: int) -> Signals:
     }
 
 
+def _block(columns: Signals, part: slice) -> Block:
+    numbers = np.arange(len(columns["v"]))[part]
+    samples = {name: Samples(numbers - numbers[0], values[part]) for name, values in columns.items()}
+    return Block(numbers * SECOND, samples, {})
+
+
 def measured(judged: Judged, columns: Signals) -> Callable[[], Sequence[float]]:
     """The robustness at each step."""
-    rows = np.arange(len(columns["v"]))
-    block = Block(rows * SECOND, {name: Samples(rows, values) for name, values in columns.items()}, {})
+    count = len(columns["v"])
+    blocks = [_block(columns, slice(start, start + ROWS)) for start in range(0, count, ROWS)]
 
     def measure() -> Sequence[float]:
         measuring = Measuring(Session(judged.plan), judged.compiled, judged.prepared)
-        measuring.take(block)
-        [curve] = measuring.curves(int(block.times[-1])).values()
+        for block in blocks:
+            measuring.take(block)
+        [curve] = measuring.curves((count - 1) * SECOND).values()
         assert not curve.reason, curve.reason
         return curve.margins  # type: ignore[return-value]
 

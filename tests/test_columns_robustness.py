@@ -18,6 +18,7 @@ from ltlc.backends.python.load import load_plan
 from ltlc.base.source import Source
 from ltlc.frontend.language import load_text
 from ltlc.inputs.recordings.rows import Row
+from ltlc.monitoring.columns import timeline
 from ltlc.monitoring.columns.measuring import Curve, Measuring
 from ltlc.monitoring.columns.prepared import prepare_all
 from ltlc.monitoring.columns.robustness import Robustness
@@ -38,7 +39,10 @@ from ltlc.specification.margins import by_how_much
 
 
 @pytest.mark.parametrize("seed", range(share_of(600)))
-def test_columns_have_the_robustness_of_the_definition_at_every_step(seed: int) -> None:
+def test_columns_have_the_robustness_of_the_definition_at_every_step(
+    seed: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(timeline, "BLOCK", seed % 3 + 1)
     property_, steps, until, past, seen = measured_run(seed)
     news = {each.name for part in predicates(property_) for each in atoms_within(part) if isinstance(each, News)}
     line = Timeline(np.array([step.time for step in steps]), until)
