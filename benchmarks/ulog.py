@@ -18,7 +18,7 @@ from pyulog import ULog
 
 from ltlc.inputs.recordings import open_recording
 from ltlc.inputs.recordings.bags.messages import LATEST
-from ltlc.inputs.recordings.bags.ulog import ULogStorage
+from ltlc.inputs.recordings.bags.ulog import LAST, ULogStorage
 from ltlc.specification.expressions import Field, Signal, ValueType
 
 
@@ -84,6 +84,7 @@ def main() -> None:
             found: dict[str, list[float]] = {way: [] for way in compared}
             for _ in range(options.rounds):
                 for way, read in compared.items():
+                    LAST.clear()
                     start = time.process_time()
                     read()
                     found[way].append(time.process_time() - start)

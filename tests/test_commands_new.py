@@ -140,7 +140,7 @@ def test_a_message_path_makes_types_known(new: Run, tmp_path: Path, capsys: pyte
     assert "from the bag" not in written
 
 
-FROM_THE_BAG = "are defined in the bag alone"
+FROM_THE_BAG = "are defined in this recording alone"
 
 
 def start_of(path: Path) -> str:

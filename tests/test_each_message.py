@@ -218,7 +218,8 @@ def ran(folder: Path, text: str, rows: str) -> ltlc.Run:
 def test_a_report_names_the_messages_that_violated_a_property_and_those_that_are_owed(tmp_path: Path) -> None:
     text = ran(tmp_path, ANSWERED, "0,,0\n1,1,\n1.5,2,\n1.6,3,\n1.7,,2\n1.8,,1\n3,4,\n").text()
     assert text.startswith("Error at line 3 of specification (answered[goal at +1.6 s]):\n")
-    assert "(this one)" not in text.partition("Because")[0]
+    assert 'more than 1 s since this "new goal": true' in text
+    assert "(this one)" not in text
     assert text.endswith(
         "answered: violated by 1 of 4 messages of goal: that at +1.6 s (decided at +2.6 s); "
         "still open: that at +3 s (1 s left); 2 satisfied; 4 episodes\n"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import random
 from itertools import accumulate
 from pathlib import Path
 from typing import Any
@@ -12,6 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from stepping import from_text
 
+from ltlc.backends.python.load import load_plan
 from ltlc.inputs.recordings.reading import Offset, ReadOptions, limit
 from ltlc.monitoring.judging.run import Judge, RunReport
 from ltlc.runtime.rows import ByRows
@@ -57,6 +59,47 @@ def test_a_comparison_says_by_how_much_it_holds_or_fails(tmp_path: Path, text: s
 def test_a_deadline_without_a_trigger_counts_from_the_first_moment_without_its_goal(tmp_path: Path) -> None:
     report = judged(tmp_path, "always eventually v > 0 within 2 s", {"time": 0, "v": 0}, {"time": 3, "v": 0})
     assert because(report) == ['more than 2 s since the first moment without "v > 0": true']
+
+
+BEFORE = {
+    "previously v > 1": lambda v: v > 1,
+    "previously v < 1": lambda v: v < 1,
+    "previously (v > 0 and v < 3)": lambda v: 0 < v < 3,
+}
+
+
+@given(values=st.lists(st.integers(0, 3), min_size=2, max_size=8), seed=st.randoms(use_true_random=False))
+def test_what_a_violation_says_of_the_instant_before_is_so_of_the_message_before(
+    values: list[int], seed: random.Random
+) -> None:
+    asked = [seed.choice(["", "not "]) + each for each in seed.sample([*BEFORE], 2)]
+    text = seed.choice(["never (v < 2 and {})", "always (v > 1 implies {} or {})", "always (v == 2 implies {} and {})"])
+    rows = ByRows(Session(load_plan(*from_text(f"{HEAD}{text.format(*asked)}"))))
+    for time, value in enumerate(values):
+        rows.samples(10 * time, ("v",), (float(value),))
+    track = rows.session.tracks[0]
+    if track.decided_at is not None and not track.decided_at.by_time:
+        step = track.decided_at.step
+        told = {each.text: each.holds for each in track.decided_at.because if each.text in BEFORE}
+        assert told == {each: step > 0 and BEFORE[each](values[step - 1]) for each in told}
+
+
+@pytest.mark.parametrize(
+    ("text", "lines"),
+    [
+        ("never (previously v > 2 and v < 1)", ["previously v > 2: true", "v < 1: true, 0.0 < 1.0 by 1"]),
+        ("always (v < 1 implies previously v < 2)", ["previously v < 2: false", "v < 1: true, 0.0 < 1.0 by 1"]),
+        (
+            "always ((v < 1 implies not previously v > 2) and (v > 4 implies previously v > 3))",
+            ["previously v > 2: true", "v < 1: true, 0.0 < 1.0 by 1"],
+        ),
+        ("(never v < 1) and always (v > 4 implies previously v > 3)", ["v < 1: true, 0.0 < 1.0 by 1"]),
+    ],
+)
+def test_what_was_so_at_the_instant_before_is_told_where_it_matters(
+    tmp_path: Path, text: str, lines: list[str]
+) -> None:
+    assert because(judged(tmp_path, text, {"time": 0, "v": 2.5}, {"time": 1, "v": 0})) == lines
 
 
 ELEMENTS = st.lists(st.sampled_from([-2.0, -1.0, 0.0, 1.0, 2.0, 3.0, float("nan")]), min_size=1, max_size=9)

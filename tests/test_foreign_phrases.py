@@ -23,6 +23,7 @@ from ltlc.semantics.verdicts import Verdict
 
 NAMES = f"""{DECLARED}decl v /odom Odometry.twist.twist.linear.x
 decl scan /scan LaserScan.ranges
+decl far /far LaserScan.ranges
 """
 
 SAME = [
@@ -112,6 +113,8 @@ OTHERS = [
     ("for each v: eventually p within 1 s", "each new v: eventually p within 1 s"),
     ("always scan[*] > 1", "always all(scan > 1)"),
     ("always rate(v) > 10 Hz", "always rate(v) >= 10 Hz over 1 s"),
+    ("never any(scan > v over scan)", "never any(scan > v over (scan))"),
+    ("never (any(scan < far over scan, far) and p)", "never (any(scan < far over (scan), (far)) and p)"),
     ("p S q", "p since q"),
     ("p until 3 s", "always p for 3 s"),
     ("p U[1,5] q", "(always p for 1 s) and (within [1 s, 5 s], until q, always p)"),
@@ -238,6 +241,7 @@ def test_what_is_offered_is_in_the_names_and_numbers_of_the_file_and_accepted(li
         "when p, q",
         "X p",
         "always scan[*] > 1",
+        "never any(scan < far over scan, far)",
         "always rate(v) > 10 Hz",
         "for each v: eventually p",
     ],

@@ -195,6 +195,16 @@ def test_what_has_no_samples_has_no_history(computed: str) -> None:
     assert codes_of(declared + f"never a > 5 and @{{{computed}, -1}} == 0") == ["LTL210"]
 
 
+@pytest.mark.parametrize(
+    ("earlier", "help"), [("new a", "once new"), ("@{a, -1}", "look back once"), ("age(a)", ""), ("scan[2:]", "")]
+)
+def test_what_has_no_samples_is_answered_by_what_it_reads(earlier: str, help: str) -> None:
+    declared = "decl a /a Float64.data\ndecl scan /scan LaserScan.ranges\n"
+    [found] = [each for each in findings(f"{declared}never @{{{earlier}, -1}}") if each.code == "LTL210"]
+    assert help in found.help
+    assert bool(help) == bool(found.help)
+
+
 def test_history_of_an_association_is_that_of_the_signal_it_names() -> None:
     assert only_property("yaw = robot.orientation before = @{yaw, -1} never yaw - before > 1").atoms[0].name == (
         "robot.orientation - @{robot.orientation, -1} > 1"

@@ -17,11 +17,12 @@ from ltlc.cli import main
 from ltlc.inputs.messages.definitions import MessageTypes
 from ltlc.inputs.messages.texts import defined
 from ltlc.inputs.recordings import RecordingError
-from ltlc.inputs.recordings.bags import cdr
+from ltlc.inputs.recordings.bags import cdr, ulog_records
 from ltlc.inputs.recordings.bags.choices import Path as FieldPath
 from ltlc.inputs.recordings.bags.copying import Copier
 from ltlc.inputs.recordings.bags.messages import LATEST
 from ltlc.inputs.recordings.bags.ulog import RECENT, ULogStorage
+from ltlc.inputs.recordings.blocks import Array
 from ltlc.runtime.times import SECOND
 
 FLIGHTS = Path(__file__).parents[2] / "shared" / "data" / "ulog"
@@ -68,6 +69,22 @@ def columns(storage: ULogStorage, topic: str) -> dict[str, Any]:
 @pytest.mark.parametrize("seed", range(share_of(60)))
 def test_every_field_of_a_random_log_is_as_pyulog_reads_it(tmp_path: Path, seed: int) -> None:
     assert_as_pyulog(random_log(random.Random(seed)).save(tmp_path / "flight.ulg"))
+
+
+def test_a_log_is_looked_through_once_and_again_when_it_changes(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    looks, read = [], ulog_records.read
+
+    def counting(data: Array) -> ulog_records.Log:
+        looks.append(len(data))
+        return read(data)
+
+    monkeypatch.setattr(ulog_records, "read", counting)
+    for last, verdict in ((1.5, "presumably satisfied"), (2.5, "violated")):
+        log = speeds([(0, 1.0), (5, last)]).save(tmp_path / "flight.ulg")
+        assert f": {verdict}" in judged(tmp_path, f"{SPEED}never speed > 2\n", log, capsys)[1]
+    assert len(looks) == 2
 
 
 @pytest.mark.skipif(not FLIGHTS.is_dir(), reason="there are no flight logs of others here")

@@ -14,6 +14,7 @@ from ltlc.semantics.timed_atoms import (
     LastTrigger,
     UntilScope,
 )
+from ltlc.specification.specification import THIS_ONE
 
 
 def lateness(clock: Clock, bound: Nanoseconds) -> str:
@@ -30,6 +31,8 @@ def _moment(clock: Clock) -> str:
     match clock:
         case AfterOpened(outer, Historically(lasting=int(start)) as event) if event == start_of(outer, start):
             return f"{duration_text(start)} after {_moment(outer)}"
+        case AfterOpened(_, Atom(name)) if name.endswith(THIS_ONE):
+            return f'this "{name.removesuffix(THIS_ONE)}"'
         case AfterOpened(outer, event):
             return f"the first {_quoted(event)}{_inside(outer)}"
         case UntilScope(outer):

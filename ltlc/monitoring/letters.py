@@ -66,7 +66,8 @@ class Letters:
         self._count = self._length = 0
         self._sha256 = hashlib.sha256()
         self._written: Nanoseconds | None = None
-        self._words: dict[int, str] = {}
+        self._forms: dict[int, str] = {}
+        """Of each letter, the form of its lines, in which the time since the line before is missing."""
 
     @cached_property
     def _holds(self) -> Callable[..., Sequence[bool]]:
@@ -183,23 +184,23 @@ class Letters:
             times, letters = (np.concatenate(each) for each in zip(*self._parts, strict=True))
             self._parts = []
             end = len(times) if until is None else int(times.searchsorted(until, "right"))
-            self._write(times[:end].tolist(), letters[:end].tolist())
+            self._write(times[:end], letters[:end].tolist())
 
-    def _write(self, times: Sequence[int], letters: Sequence[int]) -> None:
-        if not len(times):
+    def _write(self, times: NDArray[np.int64], letters: Sequence[int]) -> None:
+        if not letters:
             return
-        words, before = self._words, self._written
-        for now in {*letters} - words.keys():
-            words[now] = "".join(f" a{number}" for number in _numbers(now)) + "\n"
-        gaps = np.diff(times, prepend=times[0] if before is None else before).tolist()
-        text = "".join([f"+{gap}{words[now]}" for gap, now in zip(gaps, letters, strict=True)])
+        forms, before = self._forms, self._written
+        for now in {*letters} - forms.keys():
+            forms[now] = "+%d" + "".join(f" a{number}" for number in _numbers(now)) + "\n"
+        gaps = np.diff(times, prepend=times[0] if before is None else before)
+        text = "".join([forms[now] for now in letters]) % tuple(gaps.tolist())
         if before is None:
             text = f"at {times[0]}{text[2:]}"
-        self._written = times[-1]
-        self._count += len(times)
+        self._written = int(times[-1])
+        self._count += len(letters)
         self._length += len(text)
         if self._length <= MOST_BYTES:
-            self._lines += [Line(time, _numbers(now)) for time, now in zip(times, letters, strict=True)]
+            self._lines += [Line(time, _numbers(now)) for time, now in zip(times.tolist(), letters, strict=True)]
         self._sha256.update(text.encode())
 
     def scopes(self, until: Nanoseconds) -> tuple[StatedScope, ...] | str:

@@ -147,6 +147,11 @@ state, or, if negative, to the decision with the number `~target`. What a clock 
 counts as a condition, after the others: whether it is past its due time."""
 
 
+Remembered = tuple[str, tuple[bool | None, ...], tuple[int, ...]]
+"""What is asked about the instant before, whether it is so in each state of a monitor,
+if that is known, and the numbers of conditions that are asked for nothing else."""
+
+
 @dataclass(frozen=True, slots=True)
 class Age:
     """An age of `signal` that is asked for; messages renew it, no step does.
@@ -191,10 +196,11 @@ class MonitoredProperty:
     leave open. `edges` has where each state of the monitor leads at a step,
     `held_edges` where at a clock step, through `decisions` about what `conditions`
     gives for the values that are read, and about `clocks`; all are empty where nothing
-    violates the property. Of conditions about arrays, `elements` says what decides
-    them; `constants` are names of values of inputs, and `written` what the author calls
-    inputs by, where that is not their names. With a `slicing` it is judged for
-    each id, and all of this is said of one slice. The `requirement` that it states is
+    violates the property. What its states say of the instant before is `remembered`. Of
+    conditions about arrays, `elements` says what decides them; `constants` are names of
+    values of inputs, and `written` what the author calls inputs by, where that is not
+    their names. With a `slicing` it is judged for each id, and all of this is said of
+    one slice. The `requirement` that it states is
     an object of JSON: its `id`, `text` and `attributes`; without any it is empty.
 
     It `waits` for those of its inputs that are not excused; news always has a value.
@@ -224,6 +230,7 @@ class MonitoredProperty:
     edges: tuple[int, ...] = ()
     held_edges: tuple[int, ...] = ()
     decisions: tuple[Decision, ...] = ()
+    remembered: tuple[Remembered, ...] = ()
     elements: tuple[Elements, ...] = ()
     constants: Constants = field(default_factory=dict)
     written: Mapping[str, str] = field(default_factory=dict)

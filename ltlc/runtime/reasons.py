@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from bisect import bisect_left
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 from math import isnan
 
@@ -43,6 +43,10 @@ def because(
     edges = of.held_edges if moment.by_time else of.edges
     unknown = {n for e in of.excused if values[e.place] is None for n in e.conditions}
     numbers = decisive(of, edges[state], holds, unknown)
+    past = tuple(_remembered(of, edges, state, holds))
+    if past:
+        aside = {number for _, _, only in of.remembered for number in only}
+        numbers = tuple(number for number in numbers if number not in aside)
     first = len(holds) - len(late)
     if moment.by_time and not any(number >= first for number in numbers):
         passed = (n for n, is_late in enumerate(late, first) if is_late)
@@ -63,10 +67,28 @@ def because(
             continue
         numbers = (*numbers, *({n} - {*numbers}))
     elements = {each.condition: each for each in of.elements}
-    return tuple(
+    return past + tuple(
         with_element(of, elements[n], given, found[n]) if n in elements else found[n]
         for n in numbers
     )
+
+
+def _remembered(
+    of: MonitoredProperty, edges: Sequence[int], state: int, holds: Sequence[bool]
+) -> Iterator[Condition]:
+    """What was so at the instant before, if all would have led elsewhere otherwise."""
+    now = dict(enumerate(holds))
+    (target,) = _targets(of, edges[state], now)
+    for text, values, _ in of.remembered:
+        known, rest = values[state], [r for _, r, _ in of.remembered if r is not values]
+        otherwise = [
+            _targets(of, edges[s], now)
+            for s, value in enumerate(values)
+            if value is (not known)
+            and all(None in (r[s], r[state]) or r[s] == r[state] for r in rest)
+        ]
+        if known is not None and otherwise and {target} not in otherwise:
+            yield Condition(text, known)
 
 
 def _came_early(

@@ -53,6 +53,9 @@ def gone_name(key: str) -> str:
     return f"gone {key}"
 
 
+THIS_ONE = " (this one)"
+"""The end of the name of a message from which on a property is judged."""
+
 MOST_IDS = 1000
 """How many ids a node keeps for an `each` without a limit."""
 
@@ -106,7 +109,7 @@ class Instances:
     def mark(self) -> Signal:
         """A signal that no message has; it stands for the message from which on the property is judged."""
         _, field = next(fields(self.signal))
-        name = f"{self.signal.heard} (this one)"
+        name = f"{self.signal.heard}{THIS_ONE}"
         return Signal(name, ValueType.BOOLEAN, replace(field, topic=name, path=()))
 
     @property

@@ -7,6 +7,7 @@ from functools import cached_property
 
 from ltlc.backends.clock_words import lateness
 from ltlc.backends.python.code import Group, literal, tuple_of
+from ltlc.backends.python.remembered import remembered
 from ltlc.backends.spelling import Speller
 from ltlc.backends.steps import clock_names
 from ltlc.backends.trees import Call, Code, Text
@@ -60,6 +61,9 @@ class Reasons:
         if machine.is_timed:
             yield tuple_of(map(str, self._words.expires), "held_edges=(")
         yield tuple_of((str(tuple(decision)) for decision in self._words.decisions), "decisions=(")
+        if before := list(remembered(self.compiled.formula, self._words)):
+            texts = ((literal(self.compiled.specification.as_written(name)), *map(str, more)) for name, *more in before)
+            yield tuple_of((tuple_of(each) for each in texts), "remembered=(")
         if elements := list(self._elements()):
             yield tuple_of(elements, "elements=(")
         if entries := list(self._constants()):

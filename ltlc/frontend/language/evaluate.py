@@ -64,6 +64,7 @@ from ltlc.specification.expressions import (
     Signal,
     String,
     ValueType,
+    reads,
 )
 from ltlc.specification.functions import INSIDE, WRITTEN, Function
 from ltlc.specification.numbers import numbers_of
@@ -461,9 +462,14 @@ def _sampled(
     past = sampled(found, sample, which, signal_of)
     if past is None:
         message = f"`{checker.written(node)}` has no samples: it is neither a signal nor computed from current values"
+        read = {type(each) for part in expressions(found) for each in reads(part)}
+        help = "look back once, from each signal: `@{x, -2}` for `@{@{x, -1}, -1}`" if Past in read else ""
+        if New in read:
+            help = "`once new … within 1 s` asks whether a message came in the last second"
         if signal_of is signal_alone:
             message = f"`{checker.written(node)}` is not a signal: only signals have a value at an opening"
-        checker.report("LTL210", node.span, message, help="use `opening` with each of its signals")
+            help = "use `opening` with each of its signals"
+        checker.report("LTL210", node.span, message, help=help)
     return past
 
 

@@ -142,7 +142,7 @@ def unknown(checker: Checker, node: syntax.Reference, other: Value | None = None
         checker.report("LTL101", node.name.span, message, help=_NO_NAMES[name.lower()])
         return
     if name.lower() in ("inf", "infinity"):
-        infinite = write(writing(node.name.span, "(1 / 0)"))
+        infinite = Help("infinity is written `(1 / 0)`", (writing(node.name.span, "(1 / 0)"),))
         checker.report("LTL101", node.name.span, f"nothing called `{name}` is defined", help=infinite)
         return
     if name in RESERVED or not name.isascii() or "{" in name:

@@ -40,9 +40,9 @@ _OF_TABLE = (
     " The topics and the types of their messages are guessed from the columns of the table: change them to those of "
     "the robot."
 )
-_OF_BAG = (
-    " Some message types are defined in the bag alone: `--msg-path {bag}` gives them to `ltlc check`, `explain` and "
-    "`build`."
+_OWN_TYPES = (
+    " Some message types are defined in this recording alone: `--msg-path {origin}` gives them to `ltlc check`, "
+    "`explain` and `build`."
 )
 _STOPS = Line(
     "stops",
@@ -91,7 +91,7 @@ class Draft:
         """A specification: topics and numbers come from `origin`. Without numbers that were `measured` it has `?`.
 
         `ltlc check` finds nothing else in it, and no error when the `#` is off all that it offers. Where it names types
-        that only a bag defines, it says how they are known to other commands.
+        that only a recording defines, it says how they are known to other commands.
         """
         head = _HEAD.format(origin=origin) + (
             _UNMEASURED if measured is None else _MEASURED.format(room=ROOM, factor=ROOM_IN_TIME)
@@ -99,7 +99,7 @@ class Draft:
         if is_table:
             head += _OF_TABLE
         elif measured is not None and any(topic.type not in shipped() for topic, _ in self._subjects):
-            head += _OF_BAG.format(bag=origin)
+            head += _OWN_TYPES.format(origin=origin)
         lines, labels = [*comment(head), ""], Names(self._names)
         left_out = list(self._left_out)
         for topic, subject in self._subjects:

@@ -61,6 +61,9 @@ _FROM_SECOND = "this counts messages, `X` steps of the run"
 _FIFTY = "this is of the last 50 samples, however long they took: windows of time are not averaged"
 _EACH_MESSAGE = "this is judged from each message on; `each NAME of KEY: P` is judged for each value of KEY"
 _ANY = "for at least one element, write `any` in place of `all`"
+_LISTS = (
+    "each element of one is combined with each of the other; of arrays whose elements belong together, write `(x, y)`"
+)
 _LAST_SECOND = "a rate is the number of messages in a time, here the last second, which must be at least so many"
 _SUBJECT = r"(?P<v>[A-Za-z]\w*(?:\.\w+)*)"
 _COMPARED = r"(?P<c>\s*(?:[<>]=?|[=!]=)\s*[-\w.]+)?"
@@ -247,6 +250,8 @@ PHRASES: tuple[Phrase, ...] = (
         "{x!r}all({a!r}{c!r}){y!r}",
         _ANY,
     ),
+    Phrase(r"(?P<x>.+)\s+over\s+(?P<a>[A-Za-z]\w*)", "{x!r} over ({a!r})"),
+    Phrase(r"(?P<x>.+)\s+over\s+(?P<a>[A-Za-z]\w*)\s*,\s*(?P<b>[A-Za-z]\w*)", "{x!r} over ({a!r}), ({b!r})", _LISTS),
     Phrase(
         rf"(?P<x>.*)\brate\(\s*{_SUBJECT}\s*\)\s*>=?\s*(?P<n>\d+)\s*Hz(?!\s+over\b)(?P<y>.*)",
         "{x!r}rate({v!r}) >= {n!r} Hz over 1 s{y!r}",

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from ltlc.base.codes import diagnostic
 from ltlc.base.diagnostics import Diagnostic
+from ltlc.base.provenance import digest_of
 from ltlc.base.source import Source
 from ltlc.inputs.messages.definitions import FieldType
 from ltlc.inputs.messages.definitions import Message as Definition
@@ -66,6 +67,77 @@ class _Logged(NamedTuple):
     times: NDArray[np.int64]
 
 
+class _Scan:
+    """A log that was looked through: its `data`, what is in them, and its topics up to its damage, by name.
+
+    Raises DamageError.
+    """
+
+    def __init__(self, data: Array) -> None:
+        self.data = data
+        self.log = records.read(data)
+        self.logged = self._topics()
+
+    def _topics(self) -> dict[str, _Logged]:
+        log, found = self.log, {}
+        every, fits = self._chosen(), np.zeros(len(log.places), np.bool_)
+        layouts = {format: Layout(log.formats, format) for format, _ in every}
+        for (format, _), chosen in every.items():
+            layout, sizes = layouts[format], log.sizes[chosen]
+            fits[chosen] = (layout.least <= sizes) & (sizes <= layout.most)
+        if not fits.all():
+            end = int(fits.argmin())
+            log.damage = f"the message at byte {log.places[end]} is not in the format of its topic"
+            log.places = log.places[:end]
+        times = np.zeros(len(log.places), np.int64)
+        for (format, _), chosen in every.items():
+            known = chosen[: chosen.searchsorted(len(times))]
+            moments = numbers_at(self.data, log.places[known] + BODY + layouts[format].time, "<u8")
+            times[known] = np.minimum(moments, LATEST // MICROSECOND).astype(np.int64) * MICROSECOND
+        is_old = times < log.begin - RECENT
+        times[is_old] = times[~is_old].min(initial=log.begin)
+        for (format, instance), chosen in every.items():
+            known = chosen[: chosen.searchsorted(len(times))]
+            known = known[times[known].argsort(kind="stable")]
+            name = f"{format}[{instance}]" if instance else format
+            found[name] = _Logged(format, layouts[format], log.places[known], times[known])
+        self._times = np.maximum.accumulate(times)
+        return found
+
+    def time(self, place: int) -> Nanoseconds:
+        """When the log was written up to this byte."""
+        before = int(self.log.places.searchsorted(place))
+        return int(self._times[before - 1]) if before else self.log.begin
+
+    def _chosen(self) -> dict[tuple[str, int], Places]:
+        """Which of the logged messages are those of each format and instance, in the order of the log."""
+        log = self.log
+        order = log.numbers.argsort(kind="stable")
+        numbers, ends = log.numbers[order], dict[int, int]()
+        found: dict[tuple[str, int], Places] = {}
+        for each in reversed(log.subscriptions):
+            chosen = order[numbers.searchsorted(each.number) : numbers.searchsorted(each.number, "right")]
+            first, end = log.places[chosen].searchsorted([each.since, ends.get(each.number, len(self.data))])
+            key = each.format, each.instance
+            found[key] = np.concatenate([chosen[first:end], found.get(key, chosen[:0])])
+            ends[each.number] = each.since
+        return dict(reversed(found.items()))
+
+
+LAST: dict[str, _Scan] = {}
+"""The log that was looked through last, by its SHA-256: a command asks for its types and topics before it judges it."""
+
+
+def _scanned(path: Path) -> _Scan:
+    """The log at `path`, looked through. Raises OSError and DamageError."""
+    digest = digest_of(path, path.name).sha256
+    found = LAST.get(digest)
+    if found is None:
+        LAST.clear()
+        found = LAST[digest] = _Scan(np.fromfile(path, np.uint8))
+    return found
+
+
 class ULogStorage:
     """A `.ulg` file. Raises RecordingError if it is not one.
 
@@ -79,72 +151,24 @@ class ULogStorage:
     def __init__(self, path: Path, wanted: Mapping[str, str]) -> None:
         self._path = path
         try:
-            self._data: Array = np.fromfile(path, np.uint8)
-            self._log = records.read(self._data)
-            self._logged = self._topics()
+            self._scan = _scanned(path)
         except OSError as error:
             raise failure("LTL902", path, f"`{path}` cannot be read: {error.strerror}") from None
         except DamageError as error:
             raise failure("LTL811", path, f"`{path}` cannot be read as a flight log: {error}") from None
         self._parameters = self._messages_of_parameters()
-        names = [*self._logged, *([PARAMETERS] if len(self._parameters) else ())]
+        names = [*self._scan.logged, *([PARAMETERS] if len(self._parameters) else ())]
         self._names = {FOLDER + name: name for name in names}
         self._names |= {topic: name for topic in wanted if (name := topic.rpartition("/")[2]) in names}
         self.topics = {topic: self._topic(name, wanted.get(topic)) for topic, name in self._names.items()}
-        times = [int(time) for each in self._logged.values() if each.times.size for time in each.times[[0, -1]]]
+        times = [int(time) for each in self._scan.logged.values() if each.times.size for time in each.times[[0, -1]]]
         self.span = span_of(min(times), max(times)) if times else None
-
-    def _topics(self) -> dict[str, _Logged]:
-        """The topics of the log up to its damage, by name. Raises DamageError."""
-        log, found = self._log, {}
-        every, fits = self._chosen(), np.zeros(len(log.places), np.bool_)
-        layouts = {format: Layout(log.formats, format) for format, _ in every}
-        for (format, _), chosen in every.items():
-            layout, sizes = layouts[format], log.sizes[chosen]
-            fits[chosen] = (layout.least <= sizes) & (sizes <= layout.most)
-        if not fits.all():
-            end = int(fits.argmin())
-            log.damage = f"the message at byte {log.places[end]} is not in the format of its topic"
-            log.places = log.places[:end]
-        times = np.zeros(len(log.places), np.int64)
-        for (format, _), chosen in every.items():
-            known = chosen[: chosen.searchsorted(len(times))]
-            moments = numbers_at(self._data, log.places[known] + BODY + layouts[format].time, "<u8")
-            times[known] = np.minimum(moments, LATEST // MICROSECOND).astype(np.int64) * MICROSECOND
-        is_old = times < log.begin - RECENT
-        times[is_old] = times[~is_old].min(initial=log.begin)
-        for (format, instance), chosen in every.items():
-            known = chosen[: chosen.searchsorted(len(times))]
-            known = known[times[known].argsort(kind="stable")]
-            name = f"{format}[{instance}]" if instance else format
-            found[name] = _Logged(format, layouts[format], log.places[known], times[known])
-        self._times = np.maximum.accumulate(times)
-        return found
-
-    def _time(self, place: int) -> Nanoseconds:
-        """When the log was written up to this byte."""
-        before = int(self._log.places.searchsorted(place))
-        return int(self._times[before - 1]) if before else self._log.begin
-
-    def _chosen(self) -> dict[tuple[str, int], Places]:
-        """Which of the logged messages are those of each format and instance, in the order of the log."""
-        log = self._log
-        order = log.numbers.argsort(kind="stable")
-        numbers, ends = log.numbers[order], dict[int, int]()
-        found: dict[tuple[str, int], Places] = {}
-        for each in reversed(log.subscriptions):
-            chosen = order[numbers.searchsorted(each.number) : numbers.searchsorted(each.number, "right")]
-            first, end = log.places[chosen].searchsorted([each.since, ends.get(each.number, len(self._data))])
-            key = each.format, each.instance
-            found[key] = np.concatenate([chosen[first:end], found.get(key, chosen[:0])])
-            ends[each.number] = each.since
-        return dict(reversed(found.items()))
 
     def _messages_of_parameters(self) -> Messages:
         """All parameters at the beginning of the log, and after each change; one that comes later was as it is then."""
-        values = {each.name: each.value for each in reversed(self._log.parameters)}
+        values = {each.name: each.value for each in reversed(self._scan.log.parameters)}
         found: dict[Nanoseconds, bytes] = {}
-        for time, changes in groupby(self._log.parameters, lambda each: self._time(each.since)):
+        for time, changes in groupby(self._scan.log.parameters, lambda each: self._scan.time(each.since)):
             values |= {each.name: each.value for each in changes}
             found[time] = LITTLE_ENDIAN + b"".join(values.values())
         return batch_of(list(found.values()), list(found), range(len(found)))
@@ -153,10 +177,10 @@ class ULogStorage:
         """A topic whose messages have this type, or that of PX4."""
         types: dict[str, Definition] = {}
         if name == PARAMETERS:
-            fields = {each.name: FieldType(TYPES[each.type]) for each in self._log.parameters}
+            fields = {each.name: FieldType(TYPES[each.type]) for each in self._scan.log.parameters}
             top, count = Definition(fields, {}), len(self._parameters)
         else:
-            logged = self._logged[name]
+            logged = self._scan.logged[name]
             top, count = self._message(logged.format, types), len(logged.places)
         type_ = type_ or _type_of(name.partition("[")[0])
         return Topic(type_, "cdr", "ros2msg", text_of(type_, types | {type_: top}), count)
@@ -164,7 +188,7 @@ class ULogStorage:
     def _message(self, format: str, types: dict[str, Definition]) -> Definition:
         """The message that a format is, with those that it contains put among `types`."""
         fields = {}
-        for part in self._log.formats[format]:
+        for part in self._scan.log.formats[format]:
             if not is_padding(part):
                 fields[part.name] = FieldType(TYPES.get(part.base, _type_of(part.base)), part.length)
                 if part.base not in TYPES:
@@ -174,21 +198,21 @@ class ULogStorage:
     @property
     def remarks(self) -> list[Diagnostic]:
         """That something was not logged, if the log says so."""
-        dropouts = self._log.dropouts
+        dropouts = self._scan.log.dropouts
         if not dropouts:
             return []
         place, longest = max(dropouts, key=lambda dropout: dropout[1])
         lost = f"{counted(len(dropouts), 'dropout')}, {span_text(sum(lost for _, lost in dropouts))} in all"
         message = f"messages are missing in the log: {lost}, the longest of {span_text(longest)}"
-        help = f"that one was at {seconds_text(self._time(place))} s; what happened meanwhile was not judged"
+        help = f"that one was at {seconds_text(self._scan.time(place))} s; what happened meanwhile was not judged"
         return [diagnostic("LTL819", Source(str(self._path), ""), None, message, help=help)]
 
     def batches(self, topics: Collection[str], since: Nanoseconds, until: Nanoseconds) -> Iterator[Batch]:
         """The messages of `topics` in the order of time. Raises RecordingError after those before a damage."""
         found = {topic: self._messages(self._names[topic], since, until) for topic in topics}
         yield Batch(_in_order(found), LATEST)
-        if self._log.damage:
-            message = f"`{self._path}` is damaged: {self._log.damage}"
+        if self._scan.log.damage:
+            message = f"`{self._path}` is damaged: {self._scan.log.damage}"
             raise failure("LTL811", self._path, message, "the verdicts are about what comes before the damage")
 
     def _messages(self, name: str, since: Nanoseconds, until: Nanoseconds) -> Messages:
@@ -196,11 +220,11 @@ class ULogStorage:
         if name == PARAMETERS:
             times = self._parameters.times
             return self._parameters.taken(np.flatnonzero((times >= since) & (times <= until)))
-        logged = self._logged[name]
+        logged = self._scan.logged[name]
         first, end = logged.times.searchsorted(since), logged.times.searchsorted(until, "right")
         places = logged.places[first:end]
         sizes = np.full(len(places), logged.layout.least)
-        data, size = logged.layout.written(gathered(self._data, places + BODY, sizes))
+        data, size = logged.layout.written(gathered(self._scan.data, places + BODY, sizes))
         starts = np.arange(len(places)) * size
         return Messages(logged.times[first:end], places, data, starts, np.full(len(places), size))
 
