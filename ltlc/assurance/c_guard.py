@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from ltlc.assurance.c_library import Library, compiler
 from ltlc.assurance.library import Loaded, Monitors
 from ltlc.assurance.messages import Messages
-from ltlc.assurance.reading.c.guards import difference
+from ltlc.assurance.reading.c.guards import Texts, difference
 from ltlc.assurance.sources import read, without_news
 from ltlc.assurance.values import Samples
 from ltlc.backends.c import Files
@@ -166,7 +166,8 @@ def flaw(
 
     Without a C compiler, it is not run.
     """
-    if (wrong := difference(files, guard, program, compiled)) is not None:
+    texts = Texts(files.header, files.source, guard.header, guard.source)
+    if (wrong := difference(texts, program, compiled)) is not None:
         return str(wrong)
     path = compiler()
     if path is None:

@@ -8,11 +8,12 @@ from functools import partial
 
 from ltlc import __version__
 from ltlc.assurance.afresh import packages
-from ltlc.assurance.afresh.files import Code, compared, emitted
+from ltlc.assurance.afresh.files import Code, compared, emitted, guard_names
 from ltlc.assurance.afresh.outcomes import Equal, Unequal
 from ltlc.assurance.lowered.equality import compare
 from ltlc.assurance.lowered.letters import Judged
 from ltlc.assurance.reading.c.files import written as written_in_c
+from ltlc.assurance.reading.c.guards import Texts, difference
 from ltlc.assurance.reading.files import written
 from ltlc.assurance.reading.outcomes import Difference, ReadBack, Written
 from ltlc.assurance.reading.rust import written as written_in_rust
@@ -21,6 +22,7 @@ from ltlc.backends.spelling import NotInTargetError
 from ltlc.base.limits import Budget, Exceeded, run_all
 from ltlc.compiler import Compiled
 from ltlc.interfaces.commands.progress import progress, saying
+from ltlc.program.guards import GuardProgram
 from ltlc.specification.specification import Specification
 
 READING = Budget(seconds=60.0, megabytes=1024)
@@ -29,7 +31,13 @@ READING = Budget(seconds=60.0, megabytes=1024)
 WIDTH = 120
 
 
-def is_code_of(code: Code, compiled: Sequence[Compiled], specification: Specification, quiet: bool) -> bool:
+def is_code_of(
+    code: Code,
+    compiled: Sequence[Compiled],
+    specification: Specification,
+    quiet: bool,
+    guards: Sequence[GuardProgram] = (),
+) -> bool:
     """Say of each file whether it is what ltlc emits, and of each property whether its steps are its monitor.
 
     Only what is equal to what ltlc emits is read back: that is as large as it has to be, and nested no deeper. Raises
@@ -37,7 +45,7 @@ def is_code_of(code: Code, compiled: Sequence[Compiled], specification: Specific
     """
     try:
         with saying("comparing the code", quiet):
-            found = list(compared(code, emitted(code, compiled, specification)))
+            found = list(compared(code, emitted(code, compiled, specification, guards)))
     except NotInTargetError as error:
         print(f"the code was NOT compared: ltlc does not write these properties for this target, as they have {error}")
         return False
@@ -49,7 +57,7 @@ def is_code_of(code: Code, compiled: Sequence[Compiled], specification: Specific
     if not is_equal:
         print(f"NOT what ltlc {__version__} emits for these monitors{_of_another(code)}; nothing was read back")
         return False
-    return _are_read_back(code, compiled, specification, quiet)
+    return _are_read_back(code, compiled, specification, quiet) and _is_guard_read_back(code, compiled, guards)
 
 
 def _of_another(code: Code) -> str:
@@ -80,6 +88,17 @@ def _are_read_back(code: Code, compiled: Sequence[Compiled], specification: Spec
     for each, outcome in zip(compiled, found, strict=True):
         print(f"{each.specification.label}: {_answer(outcome)}")
     return all(isinstance(outcome, ReadBack) for outcome in found)
+
+
+def _is_guard_read_back(code: Code, compiled: Sequence[Compiled], guards: Sequence[GuardProgram]) -> bool:
+    """Say of a guard in C whether it rests where its region has it; of others, what is read back has it."""
+    if code.target != "c" or not guards:
+        return True
+    texts = Texts(*(code.texts[name] for name in (f"{code.stem}.h", f"{code.stem}.c", *guard_names(code.stem))))
+    found = difference(texts, guards[0], compiled)
+    wrong = "" if found is None else f"it does NOT rest as its region has it: {found}"
+    print(f"guard {guards[0].guards[0].out}: {wrong or 'where it rests, read back, matches its region'}")
+    return found is None
 
 
 def _read_back(compiled: Compiled, part: Written | Difference) -> ReadBack | Difference:

@@ -131,7 +131,9 @@ class Definitions:
 
     def know(self, source: str, types: Sequence[str]) -> Mapping[str, FuncDef]:
         """The functions of a file beside these, with its `types`; those that files share are known from now on."""
-        found = {node.decl.name: node for node in parsed(source, (*self._types, *types)).nodes if isinstance(node, FuncDef)}
+        found = {
+            node.decl.name: node for node in parsed(source, (*self._types, *types)).nodes if isinstance(node, FuncDef)
+        }
         self.functions = {**{name: node for name, node in found.items() if name in self.shared}, **self.functions}
         self._require_shared()
         return found

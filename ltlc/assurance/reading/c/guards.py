@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from typing import NamedTuple
 
 from pycparser import c_ast
 from pycparser.c_ast import Node
@@ -15,8 +16,6 @@ from ltlc.assurance.reading.c.parsing import parsed, shown
 from ltlc.assurance.reading.expressions import Reader
 from ltlc.assurance.reading.outcomes import Difference
 from ltlc.assurance.reading.trees import Apply, Constant, NotUnderstoodError, Tree, Variable
-from ltlc.backends.c import Files
-from ltlc.backends.c.guards import GuardFiles
 from ltlc.program.expressions import Expression, Literal
 from ltlc.program.guards import GuardProgram
 from ltlc.program.lowering import lowered, read
@@ -26,25 +25,32 @@ from ltlc.runtime.guard_plans import Asked, Asks
 from ltlc.specification.text import text
 
 
-def difference(
-    files: Files, guard: GuardFiles, program: GuardProgram, properties: Sequence[Property]
-) -> Difference | None:
-    """What the files of a guard say otherwise than its program; None: nothing. `properties` are those of `files`."""
+class Texts(NamedTuple):
+    """The files of monitors, and those of the guard beside them."""
+
+    header: str
+    source: str
+    guard_header: str
+    guard_source: str
+
+
+def difference(texts: Texts, program: GuardProgram, properties: Sequence[Property]) -> Difference | None:
+    """What files of a guard say otherwise than its program, None: nothing; `properties` are all that are monitored."""
     try:
         with shaped():
-            return _Read(files, guard, program, properties).difference()
+            return _Read(texts, program, properties).difference()
     except NotUnderstoodError as error:
         return Difference(str(error))
 
 
 class _Read:
-    def __init__(self, files: Files, guard: GuardFiles, program: GuardProgram, properties: Sequence[Property]) -> None:
+    def __init__(self, texts: Texts, program: GuardProgram, properties: Sequence[Property]) -> None:
         self.program = program
-        self.definitions = Definitions(files.header, files.source)
+        self.definitions = Definitions(texts.header, texts.source)
         self.members = Members(self.definitions, properties, is_rated=False, is_grouped=True)
         self.pace: Pace = self.members.paces[0]
-        types = parsed(guard.header, parsed(files.header).types).types
-        self.rests = self.definitions.know(guard.source, types)["rests"]
+        types = parsed(texts.guard_header, parsed(texts.header).types).types
+        self.rests = self.definitions.know(texts.guard_source, types)["rests"]
         inputs = list(dict.fromkeys(i for held in program.resting.conditions for i in held.inputs))
         values = {kept.ago(): Named(Variable(kept.name), "double") for kept in self.pace.values.values()}
         self.scope = Scope(self.definitions, {}, {**readings(self.definitions, self.pace, inputs), **values})
