@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import math
 import random
 from collections.abc import Sequence
 
@@ -18,6 +19,7 @@ from ltlc.backends.python.load import load_plan
 from ltlc.compiler import Compiled
 from ltlc.dataclass import dataclass
 from ltlc.program.guards import GuardProgram
+from ltlc.program.types import Scalar, type_of
 from ltlc.runtime.guarding import Action, Deed, Guard, Message
 from ltlc.runtime.times import NEVER
 from ltlc.runtime.watching import Watching
@@ -77,11 +79,15 @@ class EmittedGuard(Monitors):
 
 @dataclass(frozen=True, slots=True)
 class Event:
-    """A message on a topic, or with None time that passes up to `time`; `sample` are its values."""
+    """A message on a topic, or with None time that passes up to `time`; `sample` are its values.
+
+    What is due before it is done in time, or only now, where the guard `is_late`.
+    """
 
     time: Nanoseconds
     topic: str | None
     sample: dict[Signal, Value]
+    is_late: bool = False
 
     def __str__(self) -> str:
         values = ", ".join(f"{signal.name} = {value}" for signal, value in self.sample.items())
@@ -97,7 +103,7 @@ class Beside:
 
     def take(self, event: Event) -> tuple[list[int], list[int]]:
         """What is due before an event, and the event."""
-        right, found = self._due(event.time)
+        right, found = self._late(event.time) if event.is_late else self._due(event.time)
         sample = {signal.name: value for signal, value in event.sample.items()}
         (out,) = self.guard.outs
         if event.topic == out:
@@ -115,6 +121,13 @@ class Beside:
             right += map(self._decided, self.guard.act(due))
             while self.emitted.due() <= due:
                 found.append(self.emitted.act(due))
+        return right, found
+
+    def _late(self, time: Nanoseconds) -> tuple[list[int], list[int]]:
+        right = list(map(self._decided, self.guard.act(time)))
+        found: list[int] = []
+        while self.emitted.due() <= time:
+            found.append(self.emitted.act(time))
         return right, found
 
     def _decided(self, deed: Deed) -> int:
@@ -151,7 +164,16 @@ class Drawn:
         for some in self._samples:
             values |= some.next(()).sample
         own = {signal: values[signal] for signal in self._topics.get(topic or "", ()) if signal in values}
-        return Event(time, topic, own)
+        if chance.random() < 0.1:
+            own = {signal: _unknown(signal, value) for signal, value in own.items()}
+        return Event(time, topic, own, chance.random() < 0.1)
+
+
+def _unknown(signal: Signal, value: Value) -> Value:
+    """NaN in the place of a number that can be that."""
+    if type_of(signal).scalar not in (Scalar.SINGLE, Scalar.DOUBLE):
+        return value
+    return (math.nan,) if type_of(signal).is_array else math.nan
 
 
 def flaw(
