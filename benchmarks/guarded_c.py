@@ -102,7 +102,8 @@ static uint32_t draw(uint32_t count)
 
 
 def _constant(value: object, type_: Type) -> str:
-    exact = int(value) if type_.scalar.is_integer else value  # type: ignore[call-overload]
+    assert isinstance(value, bool | int | float | str)
+    exact = int(value) if type_.scalar.is_integer else value
     return flat(C("g").speller({}).code(Literal(exact, type_)))
 
 

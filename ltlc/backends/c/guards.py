@@ -241,9 +241,8 @@ class _File:
                 return f"({flat(self.speller.asked(self.program.resting.conditions[of].holds, True))})"
 
     def _known(self, held: Held) -> list[Code]:
-        flags = [Text(f"signals->has_{group.name}") for group in self.of.samples.sources(held.inputs)]
         numbers = [] if isinstance(held.known, Literal) else [self.speller.asked(held.known, True)]
-        return [*dict.fromkeys([*flags, *self.signals.ready(held.inputs)]), *numbers] or [Text("true")]
+        return [*self.signals.ready(held.inputs), *numbers] or [Text("true")]
 
     @cached_property
     def _bound(self) -> Cost:

@@ -121,9 +121,7 @@ class _Read:
 
     def _is_known(self, node: Node, held: Held) -> bool:
         """Whether it is that all values are there, none of them NaN."""
-        given = self.members.given
-        flags = [f"signals->{group.flag}" for group in given.groups_of(held.inputs)]
-        there = set(self.definitions.places([*flags, *self.pace.ready(given, held.inputs)]))
+        there = set(self.definitions.places(self.pace.ready(self.members.given, held.inputs)))
         parts = list(_conjoined(node))
         rest: list[Tree] = [self.scope.tree(part) for part in parts if shown(part) not in there]
         if {shown(part) for part in parts} < there or len(parts) != len(rest) + len(there):
