@@ -28,7 +28,7 @@ _CHANGES: tuple[tuple[str, str], ...] = (
 
 
 _HARMLESS = re.compile(
-    r"time > -|ahead < run->monitors.time|is_silent = !|_SATISFIED\) \{|!= signals->|time <= |> INT64_C"
+    r"time > -|ahead < run->monitors.time|is_silent = !|_PRESUMABLY_|!= signals->|time <= |> INT64_C"
 )
 """Times that no caller has, the larger one of two that are equal, topics whose messages have no values.
 

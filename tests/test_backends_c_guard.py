@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import random
+import re
 import subprocess
+import textwrap
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -61,10 +63,12 @@ def test_a_guard_in_c_decides_as_the_runtime_does(name: str) -> None:
 
 
 ALL = f"""{CMD}{SCAN}decl estop /estop std_msgs/Bool.data
+decl joy /joy std_msgs/Bool.data
 assume never min(scan) < 0
 near: always (min(scan) < 0.5 implies eventually speed <= 0.2 within 100 ms)
 slow: always (new speed and min(scan) < 0.5 implies speed <= 0.2)
 still: always (estop and previously estop implies speed == 0)
+held: always (age(joy) > 500 ms and previously age(joy) > 500 ms implies speed == 0)
 """
 """A guard that does all that guards do."""
 
@@ -245,6 +249,24 @@ int main(void)
     return run.has_lost;
 }
 """
+
+
+@needs_compiler
+def test_the_program_of_the_documentation_prints_what_it_says(tmp_path: Path) -> None:
+    page = (Path(__file__).parent.parent / "docs" / "c.md").read_text(encoding="utf-8")
+    blocks = [textwrap.dedent(each) for each in re.findall(r"(?:^    .*\n|^\n)+", page, re.MULTILINE)]
+    specification, compiled, _, of = programs(next(each for each in blocks if "# safe.txt" in each))
+    files = c.emit(compiled, specification, "safe")
+    guard = guards.emit(files, of)
+    texts = {"safe.h": files.header, "safe.c": files.source, "safe_guard.h": guard.header, "safe_guard.c": guard.source}
+    for name, text in {**texts, "main.c": next(each for each in blocks if "safe_guard.h" in each)}.items():
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    command = [compiler() or "", *FLAGS, "safe.c", "safe_guard.c", "main.c", "-o", "main", "-lm"]
+    subprocess.run(command, cwd=tmp_path, check=True)
+    said = subprocess.run([tmp_path / "main"], check=True, capture_output=True, text=True).stdout
+    assert [line.split(": ")[1] for line in said.splitlines()] == ["nothing"] * 2 + ["the command", "nothing"] + [
+        "stop"
+    ] * 2
 
 
 def test_a_worst_case_is_stated_in_the_header() -> None:
