@@ -129,11 +129,11 @@ def _emitted(
                 found |= dict(zip(guard_names(code.stem), (guard.header, guard.source), strict=True))
             return found
         case "ament":
-            return ament.emit(compiled, specification, (), _metadata(code))
+            return ament.emit(compiled, specification, (), _metadata(code), guards)
         case _:
             pass
     (name,) = code.texts
-    return {name: emit(code.target, compiled, specification)}
+    return {name: emit(code.target, compiled, specification, guards)}
 
 
 def _of_commit(emitted: str, found: str) -> str:

@@ -57,7 +57,9 @@ def is_code_of(
     if not is_equal:
         print(f"NOT what ltlc {__version__} emits for these monitors{_of_another(code)}; nothing was read back")
         return False
-    return _are_read_back(code, compiled, specification, quiet) and _is_guard_read_back(code, compiled, guards)
+    return _are_read_back(code, compiled, specification, guards, quiet) and _are_guards_read_back(
+        code, compiled, guards
+    )
 
 
 def _of_another(code: Code) -> str:
@@ -79,10 +81,13 @@ def _lines(name: str, outcome: Equal | Unequal) -> list[str]:
     return [*lines, *([f"  not compared: {outcome.not_compared}"] if outcome.not_compared else [])]
 
 
-def _are_read_back(code: Code, compiled: Sequence[Compiled], specification: Specification, quiet: bool) -> bool:
+def _are_read_back(
+    code: Code, compiled: Sequence[Compiled], specification: Specification, guards: Sequence[GuardProgram], quiet: bool
+) -> bool:
     with progress("reading back the code", quiet) as watch:
         jobs = [
-            partial(_read_back, *pair) for pair in zip(compiled, _written(code, compiled, specification), strict=True)
+            partial(_read_back, *pair)
+            for pair in zip(compiled, _written(code, compiled, specification, guards), strict=True)
         ]
         found = run_all(jobs, READING, watch=watch)
     for each, outcome in zip(compiled, found, strict=True):
@@ -90,14 +95,15 @@ def _are_read_back(code: Code, compiled: Sequence[Compiled], specification: Spec
     return all(isinstance(outcome, ReadBack) for outcome in found)
 
 
-def _is_guard_read_back(code: Code, compiled: Sequence[Compiled], guards: Sequence[GuardProgram]) -> bool:
-    """Say of a guard in C whether it rests where its region has it; of others, what is read back has it."""
-    if code.target != "c" or not guards:
-        return True
-    texts = Texts(*(code.texts[name] for name in (f"{code.stem}.h", f"{code.stem}.c", *guard_names(code.stem))))
-    found = difference(texts, guards[0], compiled)
+def _are_guards_read_back(code: Code, compiled: Sequence[Compiled], guards: Sequence[GuardProgram]) -> bool:
+    """Say of each guard whether it rests where its region has it; in Python, what was read back has that."""
+    found: Difference | None = None
+    if code.target == "c" and guards:
+        names = (f"{code.stem}.h", f"{code.stem}.c", *guard_names(code.stem))
+        found = difference(Texts(*(code.texts[name] for name in names)), guards[0], compiled)
     wrong = "" if found is None else f"it does NOT rest as its region has it: {found}"
-    print(f"guard {guards[0].guards[0].out}: {wrong or 'where it rests, read back, matches its region'}")
+    for guard in (guard for program in guards for guard in program.guards):
+        print(f"guard {guard.out}: {wrong or 'where it rests, read back, matches its region'}")
     return found is None
 
 
@@ -113,7 +119,9 @@ def _judged(compiled: Compiled) -> Judged:
     return Judged(compiled.specification, compiled.formula, compiled.monitor)
 
 
-def _written(code: Code, compiled: Sequence[Compiled], specification: Specification) -> Sequence[Written | Difference]:
+def _written(
+    code: Code, compiled: Sequence[Compiled], specification: Specification, guards: Sequence[GuardProgram]
+) -> Sequence[Written | Difference]:
     match code.target:
         case "rust":
             (text,) = code.texts.values()
@@ -127,7 +135,7 @@ def _written(code: Code, compiled: Sequence[Compiled], specification: Specificat
             text = packages.as_one(code.texts)
         case _:
             (text,) = code.texts.values()
-    return written(text, [each.machine for each in compiled], [each.specification for each in compiled])
+    return written(text, [each.machine for each in compiled], [each.specification for each in compiled], guards)
 
 
 def _answer(outcome: ReadBack | Difference | Exceeded) -> str:
