@@ -204,7 +204,7 @@ PROPERTIES = EXAMPLES["near"].text.replace("p:", "near:").replace("q:", "slow:")
 def test_a_guard_is_built_certified_and_compiled_with_a_program(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(c_guard, "RUNS", 5)
+    monkeypatch.setattr(c_guard, "EVENTS", 200)
     (tmp_path / "p.txt").write_text(PROPERTIES, encoding="utf-8")
     files = [str(tmp_path / name) for name in ("p.txt", "p.cert", "p.c")]
     with quick_gate():

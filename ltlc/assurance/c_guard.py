@@ -33,8 +33,8 @@ from ltlc.specification.specification import Specification, fields
 HOLD, PASS = 0, 1
 """What a guard in C decides; a fallback is 2 + its number."""
 
-RUNS, EVENTS = 60, 40
-"""How many runs are compared, and how long they are."""
+EVENTS, LONGEST, LOST = 3000, 40, 3
+"""How many events are compared, in runs of at most so many, which end so many after a guard has lost."""
 
 
 class EmittedGuard(Monitors):
@@ -210,15 +210,18 @@ def deviation(
     """What the emitted guard does otherwise than the runtime's; None if nothing is found."""
     plan = load_plan(compiled, specification, guards=[program])
     (own,), sent = plan.guards, fallbacks(program, compiled)
-    for seed in range(RUNS):
-        chance = random.Random(seed)
-        event = drawn.first(chance)
+    chance, left = random.Random(0), EVENTS
+    while left > 0:
+        event, since = drawn.first(chance), 0
         runtime = Guard(Watching(plan, own, event.time), own.outs, sent, own.lead)
         both = Beside(EmittedGuard(library, guard), runtime)
-        for number in range(1, EVENTS + 1):
+        for number in range(1, LONGEST + 1):
             right, found = both.take(event)
             if right != found or both.emitted.has_lost is not (runtime.lost is not None):
                 return f"{_shown(guard, found)} instead of {_shown(guard, right)} after {number} events, {event}"
+            left, since = left - 1, since + both.emitted.has_lost
+            if since == LOST:
+                break
             event = drawn.event(chance, event.time, both.emitted.due())
     return None
 
