@@ -28,7 +28,7 @@ _CHANGES: tuple[tuple[str, str], ...] = (
 
 
 _HARMLESS = re.compile(
-    r"time > -|ahead < run->monitors.time|is_silent = !|_PRESUMABLY_|!= signals->|time <= |> INT64_C"
+    r"time > -|ahead < run->monitors.time|is_silent = !|_PRESUMABLY_|!= signals->|time <= |> INT64_C|has_lost = !is_calm"
 )
 """Times that no caller has, the larger one of two that are equal, topics whose messages have no values.
 
@@ -39,7 +39,7 @@ And one of several properties that a value that is missing blinds; a nanosecond 
 def mutants(source: str) -> Iterator[tuple[str, str]]:
     """Each change of one place in the functions of a guard, and what it is.
 
-    Of `catch_up`, which no guard calls that acts in time, other tests ask.
+    Other tests ask of `catch_up`, which no guard calls that acts in time, and of answers that come too late.
     """
     begin, aside, back = (
         source.index(f"/* {each}") for each in ("Whether the guard may be", "Let deadlines", "Whether `t")

@@ -101,10 +101,10 @@ def test_the_judge_in_c_finds_what_a_guard_that_minds_nothing_lets_through(tmp_p
 
 
 class Near:
-    """The guard of the first example in C, with messages by their values."""
+    """The guard of the first example in C, or of another text, with messages by their values."""
 
-    def __init__(self) -> None:
-        specification, compiled, _, of = programs(EXAMPLES["near"].text)
+    def __init__(self, text: str = EXAMPLES["near"].text) -> None:
+        specification, compiled, _, of = programs(text)
         files = c.emit(compiled, specification, "g")
         guard = guards.emit(files, of)
         path = compiler()
@@ -154,6 +154,21 @@ def test_a_guard_in_c_that_acts_too_late_has_lost_and_sends_its_first_fallback_e
     assert near.command(101 * MS, 0.0) == STOP
     assert near.scan(102 * MS, 9.0) == HOLD
     assert near.command(103 * MS, 1.0) == STOP
+
+
+@needs_compiler
+@pytest.mark.parametrize("late", [-1, 0, 1])
+def test_an_answer_to_what_time_does_may_be_late_by_the_lead_and_no_more(late: int) -> None:
+    near = Near(
+        f"{CMD}decl joy /joy std_msgs/Bool.data\n"
+        "p: always (age(joy) > 500 ms and previously age(joy) > 500 ms implies speed == 0)"
+    )
+    near.guard.hear(0, "/joy", {})
+    assert near.command(1, 1.0) == PASS
+    due = near.guard.due()
+    assert due == 500 * MS + 1
+    assert near.guard.act(due + 10 * MS + late) == (HOLD if late > 0 else STOP)
+    assert near.guard.has_lost is (late > 0)
 
 
 @needs_compiler
