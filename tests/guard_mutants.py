@@ -28,7 +28,8 @@ _CHANGES: tuple[tuple[str, str], ...] = (
 
 
 _HARMLESS = re.compile(
-    r"time > -|ahead < run->monitors.time|is_silent = !|_PRESUMABLY_|!= signals->|time <= |> INT64_C|has_lost = !is_calm"
+    r"time > -|ahead < run->monitors.time|is_silent = !|_PRESUMABLY_|!= signals->"
+    r"|time <= |> INT64_C|has_lost = !is_calm"
 )
 """Times that no caller has, the larger one of two that are equal, topics whose messages have no values.
 
