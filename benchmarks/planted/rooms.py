@@ -19,7 +19,7 @@ ROOMS = {
     "automata": "test_automata_*.py test_diagrams.py test_progression.py test_violations.py",
     "backends": "test_backends_tools.py test_backends_time.py test_automata_package.py test_comparison_pictures.py",
     "backends/ament": "test_backends_ament.py",
-    "backends/c": "test_backends_c.py test_backends_time.py test_assurance_reading_c.py test_each_c.py"
+    "backends/c": "test_backends_c*.py test_backends_time.py test_assurance_reading_c.py test_each_c.py"
     " test_each_message_c.py",
     "backends/python": "test_backends_python.py test_backends_time.py test_assurance_replay.py test_ground_truth.py",
     "backends/rust": "test_backends_rust.py test_assurance_reading_rust.py test_each_rust.py",

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import ctypes
+import math
 import random
 from collections.abc import Sequence
 
 from ltlc.assurance.c_library import Library, compiler
 from ltlc.assurance.library import Loaded, Monitors
 from ltlc.assurance.messages import Messages
+from ltlc.assurance.reading.c.guards import Texts, difference
 from ltlc.assurance.sources import read, without_news
 from ltlc.assurance.values import Samples
 from ltlc.backends.c import Files
@@ -17,6 +19,7 @@ from ltlc.backends.python.load import load_plan
 from ltlc.compiler import Compiled
 from ltlc.dataclass import dataclass
 from ltlc.program.guards import GuardProgram
+from ltlc.program.types import Scalar, type_of
 from ltlc.runtime.guarding import Action, Deed, Guard, Message
 from ltlc.runtime.times import NEVER
 from ltlc.runtime.watching import Watching
@@ -30,8 +33,8 @@ from ltlc.specification.specification import Specification, fields
 HOLD, PASS = 0, 1
 """What a guard in C decides; a fallback is 2 + its number."""
 
-RUNS, EVENTS = 60, 40
-"""How many runs are compared, and how long they are."""
+EVENTS, LONGEST, LOST = 3000, 40, 3
+"""How many events are compared, in runs of at most so many, which end so many after a guard has lost."""
 
 
 class EmittedGuard(Monitors):
@@ -76,11 +79,15 @@ class EmittedGuard(Monitors):
 
 @dataclass(frozen=True, slots=True)
 class Event:
-    """A message on a topic, or with None time that passes up to `time`; `sample` are its values."""
+    """A message on a topic, or with None time that passes up to `time`; `sample` are its values.
+
+    What is due before it is done in time, or only now, where the guard `is_late`.
+    """
 
     time: Nanoseconds
     topic: str | None
     sample: dict[Signal, Value]
+    is_late: bool = False
 
     def __str__(self) -> str:
         values = ", ".join(f"{signal.name} = {value}" for signal, value in self.sample.items())
@@ -96,7 +103,7 @@ class Beside:
 
     def take(self, event: Event) -> tuple[list[int], list[int]]:
         """What is due before an event, and the event."""
-        right, found = self._due(event.time)
+        right, found = self._late(event.time) if event.is_late else self._due(event.time)
         sample = {signal.name: value for signal, value in event.sample.items()}
         (out,) = self.guard.outs
         if event.topic == out:
@@ -114,6 +121,13 @@ class Beside:
             right += map(self._decided, self.guard.act(due))
             while self.emitted.due() <= due:
                 found.append(self.emitted.act(due))
+        return right, found
+
+    def _late(self, time: Nanoseconds) -> tuple[list[int], list[int]]:
+        right = list(map(self._decided, self.guard.act(time)))
+        found: list[int] = []
+        while self.emitted.due() <= time:
+            found.append(self.emitted.act(time))
         return right, found
 
     def _decided(self, deed: Deed) -> int:
@@ -150,7 +164,16 @@ class Drawn:
         for some in self._samples:
             values |= some.next(()).sample
         own = {signal: values[signal] for signal in self._topics.get(topic or "", ()) if signal in values}
-        return Event(time, topic, own)
+        if chance.random() < 0.1:
+            own = {signal: _unknown(signal, value) for signal, value in own.items()}
+        return Event(time, topic, own, chance.random() < 0.1)
+
+
+def _unknown(signal: Signal, value: Value) -> Value:
+    """NaN in the place of a number that can be that."""
+    if type_of(signal).scalar not in (Scalar.SINGLE, Scalar.DOUBLE):
+        return value
+    return (math.nan,) if type_of(signal).is_array else math.nan
 
 
 def flaw(
@@ -165,6 +188,9 @@ def flaw(
 
     Without a C compiler, it is not run.
     """
+    texts = Texts(files.header, files.source, guard.header, guard.source)
+    if (wrong := difference(texts, program, compiled)) is not None:
+        return str(wrong)
     path = compiler()
     if path is None:
         return None
@@ -184,15 +210,18 @@ def deviation(
     """What the emitted guard does otherwise than the runtime's; None if nothing is found."""
     plan = load_plan(compiled, specification, guards=[program])
     (own,), sent = plan.guards, fallbacks(program, compiled)
-    for seed in range(RUNS):
-        chance = random.Random(seed)
-        event = drawn.first(chance)
+    chance, left = random.Random(0), EVENTS
+    while left > 0:
+        event, since = drawn.first(chance), 0
         runtime = Guard(Watching(plan, own, event.time), own.outs, sent, own.lead)
         both = Beside(EmittedGuard(library, guard), runtime)
-        for number in range(1, EVENTS + 1):
+        for number in range(1, LONGEST + 1):
             right, found = both.take(event)
             if right != found or both.emitted.has_lost is not (runtime.lost is not None):
                 return f"{_shown(guard, found)} instead of {_shown(guard, right)} after {number} events, {event}"
+            left, since = left - 1, since + both.emitted.has_lost
+            if since == LOST:
+                break
             event = drawn.event(chance, event.time, both.emitted.due())
     return None
 

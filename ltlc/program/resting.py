@@ -28,7 +28,8 @@ from ltlc.semantics.monitor import Decision, Target
 from ltlc.semantics.ordered_machine import Timed
 from ltlc.semantics.trackers import State
 from ltlc.specification.atoms import Atom
-from ltlc.specification.expressions import Input, inputs, operands
+from ltlc.specification.evaluation import Value
+from ltlc.specification.expressions import Current, Input, inputs, operands
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,6 +59,12 @@ class Held(NamedTuple):
     inputs: tuple[Input, ...]
     known: Expression
     holds: Expression
+
+    @property
+    def first(self) -> tuple[Value | None, ...]:
+        """What each input is before there is a sample, if that is something."""
+        constants = (i.signal.otherwise if isinstance(i, Current) else None for i in self.inputs)
+        return tuple(None if each is None else each.value for each in constants)
 
 
 @dataclass(frozen=True, slots=True)
@@ -163,16 +170,16 @@ class _Lowered:
     def _held(self, letters: Diagram) -> Diagram:
         """That a predicate holds, whatever the conditions are that are not known."""
         if letters not in self._asking:
-            self._asking[letters] = self._knowing([*self._related(letters)], (), letters)
+            self._asking[letters] = self._knowing(self._related(letters), (), letters)
         return self._asking[letters]
 
-    def _related(self, letters: Diagram) -> Iterator[str]:
+    def _related(self, letters: Diagram) -> list[str]:
         """The atoms that a predicate is about, and those that constrain them."""
         asked = {self.before.split(n)[0] for n in self.before.reachable(letters) if not self.before.is_terminal(n)}
         about = {name for name, level in self.levels.items() if level in asked}
         for group in self.arena.alphabet.groups:
             about |= set(group.atoms) if about.intersection(group.atoms) else set()
-        return (name for name in self.levels if name in about)
+        return [name for name in self.levels if name in about]
 
     def _knowing(self, names: Sequence[str], unknown: tuple[str, ...], letters: Diagram) -> Diagram:
         if not names:

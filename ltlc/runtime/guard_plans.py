@@ -10,7 +10,7 @@ from enum import Enum
 from typing import NamedTuple
 
 from ltlc.dataclass import dataclass
-from ltlc.runtime.sampling import Wanted
+from ltlc.runtime.sampling import Value, Wanted
 
 
 class Asks(Enum):
@@ -46,11 +46,16 @@ NO, YES = 0, 1
 
 @dataclass(frozen=True, slots=True)
 class HeldCondition:
-    """A condition on values: if it compares no NaN (`known`), whether it `holds`."""
+    """A condition on values: if it compares no NaN (`known`), whether it `holds`.
+
+    Before there are samples, its inputs have the values `first`, None where there is
+    none; with none at all, that is empty.
+    """
 
     inputs: tuple[Wanted, ...]
     known: Callable[..., bool]
     holds: Callable[..., bool]
+    first: tuple[Value, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -119,12 +119,19 @@ class Watching:
                 has_begun = monitor.verdict is not Verdict.NOT_STARTED
                 return has_begun and monitor.state == asked.number
             case Asks.KNOWN:
-                values = self._windows[asked.of].values(self._known)
+                values = self._values(asked.of)
                 is_there = all(value is not None for value in values)
                 return is_there and self._plan.conditions[asked.of].known(*values)
             case Asks.HOLDS:
-                values = self._windows[asked.of].values(self._known)
-                return self._plan.conditions[asked.of].holds(*values)
+                return self._plan.conditions[asked.of].holds(*self._values(asked.of))
+
+    def _values(self, number: int) -> Sequence[Value]:
+        """What a condition reads."""
+        values = self._windows[number].values(self._known)
+        if first := self._plan.conditions[number].first:
+            pairs = zip(values, first, strict=True)
+            return [other if value is None else value for value, other in pairs]
+        return values
 
     def due(self) -> int | None:
         """When something changes by time alone next."""

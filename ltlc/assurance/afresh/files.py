@@ -14,9 +14,11 @@ from ltlc.assurance.afresh.outcomes import Equal, Unequal
 from ltlc.assurance.reading.c.parsing import parsed
 from ltlc.backends import ament, c, emit
 from ltlc.backends.ament.metadata import Metadata, metadata_of
+from ltlc.backends.c import guards as c_guards
 from ltlc.backends.trees import prose
 from ltlc.compiler import Compiled
 from ltlc.dataclass import dataclass
+from ltlc.program.guards import GuardProgram
 from ltlc.specification.specification import Specification
 
 MOST_CHARACTERS = 100_000
@@ -65,12 +67,18 @@ def code_at(path: Path) -> Code:
         return _package_at(path)
     if path.suffix in OF_C:
         beside = [path.with_suffix(suffix) for suffix in OF_C]
+        beside += [each for name in guard_names(path.stem) if (each := path.with_name(name)).exists()]
         return Code("c", path.stem, {p.name: _read(p) for p in beside if p.suffix != ".hpp" or p.exists()})
     text = _read(path)
     if path.suffix == ".rs":
         return Code("rust", path.stem, {path.name: text})
     is_node = re.search(r"^def plan\(", text, re.M) is not None
     return Code("ros2" if is_node else "python", path.stem, {path.name: text})
+
+
+def guard_names(stem: str) -> tuple[str, str]:
+    """What the header and the source file of a guard are called."""
+    return f"{stem}_guard.h", f"{stem}_guard.c"
 
 
 def _package_at(folder: Path) -> Code:
@@ -95,34 +103,37 @@ def text_at(path: Path, what: str) -> str:
         raise UnusableError(f"{path} is not {what}: it is not UTF-8 text") from None
 
 
-def emitted(code: Code, compiled: Sequence[Compiled], specification: Specification) -> Mapping[str, str]:
+def emitted(
+    code: Code, compiled: Sequence[Compiled], specification: Specification, guards: Sequence[GuardProgram] = ()
+) -> Mapping[str, str]:
     """The texts that ltlc emits for the target of `code`, by name, under the name that `code` gives the specification.
 
     They are by the commit that `code` says. Raises NotInTargetError; UnusableError if the package says nothing of
     itself.
     """
-    texts = _emitted(code, compiled, specification)
+    texts = _emitted(code, compiled, specification, guards)
     return {name: _of_commit(text, code.texts.get(name, "")) for name, text in texts.items()}
 
 
-def _emitted(code: Code, compiled: Sequence[Compiled], specification: Specification) -> Mapping[str, str]:
+def _emitted(
+    code: Code, compiled: Sequence[Compiled], specification: Specification, guards: Sequence[GuardProgram]
+) -> Mapping[str, str]:
     specification = _called(specification, code)
     match code.target:
         case "c":
             files = c.emit(compiled, specification, code.stem)
-            return dict(
-                zip(
-                    (f"{code.stem}{suffix}" for suffix in OF_C),
-                    (files.header, files.source, files.wrapper),
-                    strict=True,
-                )
-            )
+            texts = (files.header, files.source, files.wrapper)
+            found = dict(zip((f"{code.stem}{suffix}" for suffix in OF_C), texts, strict=True))
+            if guards:
+                guard = c_guards.emit(files, guards)
+                found |= dict(zip(guard_names(code.stem), (guard.header, guard.source), strict=True))
+            return found
         case "ament":
-            return ament.emit(compiled, specification, (), _metadata(code))
+            return ament.emit(compiled, specification, (), _metadata(code), guards)
         case _:
             pass
     (name,) = code.texts
-    return {name: emit(code.target, compiled, specification)}
+    return {name: emit(code.target, compiled, specification, guards)}
 
 
 def _of_commit(emitted: str, found: str) -> str:
@@ -186,11 +197,18 @@ def compared(code: Code, right: Mapping[str, str]) -> Iterator[tuple[str, Equal 
 
 
 def _compared_c(code: Code, right: Mapping[str, str]) -> Iterator[tuple[str, Equal | Unequal]]:
-    """The header, the source file, which knows its types, and what wraps them for C++."""
-    header, source, wrapper = right
+    """The header, the source file, which knows its types, what wraps them for C++, and the files of a guard."""
+    header, source, wrapper, *guard = right
     yield header, c_texts.compare(code.texts[header], right[header])
     yield source, c_texts.compare(code.texts[source], right[source], parsed(right[header]).types)
     if wrapper in code.texts:
         yield wrapper, c_texts.compare_tokens(code.texts[wrapper], right[wrapper])
     else:
         yield wrapper, Equal("", not_compared="the C++ header, which is missing")
+    types = parsed(right[header]).types
+    for name in guard:
+        if name in code.texts:
+            yield name, c_texts.compare(code.texts[name], right[name], types)
+            types = (*types, *parsed(right[name], types).types)
+        else:
+            yield name, Unequal("it is missing")

@@ -89,7 +89,7 @@ class _Done(NamedTuple):
 
 class _Comparison:
     def __init__(self, machine: Machine, judged: Judged) -> None:
-        self.machine, self.monitor = machine, judged.monitor
+        self.machine, self.monitor, self.formula = machine, judged.monitor, judged.formula
         self.is_timed = bool(timed_atoms(judged.formula))
         self.arrival = judged.specification.arrival
         self.openings = judged.specification.openings()
@@ -180,11 +180,18 @@ class _Comparison:
             if found is not None:
                 return found
             done[place] = held
-        places: dict[int, set[arenas.Place]] = {}
+        return Equal(len(done), self.places(done))
+
+    def places(self, done: Iterable[Place]) -> Mapping[int, frozenset[arenas.Place]]:
+        """Where the monitor and its clocks are, without what only follows scopes at whose opening values are taken."""
+        numbers = {tracker.subject: k for k, tracker in enumerate(self.time.trackers)}
+        own = [numbers[tracker.subject] for tracker in ResetMachine(self.formula).trackers]
+        found: dict[int, set[arenas.Place]] = {}
         for place in done:
             if place.clocks is not None and not place.first:
-                places.setdefault(place.state, set()).add(arenas.Place(place.judged, place.clocks))
-        return Equal(len(done), {state: frozenset(found) for state, found in places.items()})
+                clocks = Clocks(False, tuple(place.clocks.states[k] for k in own))
+                found.setdefault(place.state, set()).add(arenas.Place(place.judged, clocks))
+        return {state: frozenset(some) for state, some in found.items()}
 
     def reach(self, place: Place, letters: Diagram) -> None:
         """`letters` have led to `place`."""

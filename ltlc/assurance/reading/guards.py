@@ -83,10 +83,11 @@ def _require_conditions(file: PythonFile, node: ast.expr | None, program: GuardP
         raise NotUnderstoodError(f"the guard of {program.guards[0].out} holds other conditions")
     for each, held in zip(found, program.resting.conditions, strict=True):
         match each:
-            case ast.Call(ast.Name("HeldCondition"), [inputs, known, holds], []):
+            case ast.Call(ast.Name("HeldCondition"), [inputs, known, holds, *first], []):
                 given = tuple(map(read, held.inputs))
+                had = data(first[0]) if first else (None,) * len(given)
                 right: list[tuple[ast.expr, Expression]] = [(known, held.known), (holds, held.holds)]
-                if data(inputs) == tuple(map(input_data, given)) and all(
+                if (data(inputs), repr(had)) == (tuple(map(input_data, given)), repr(held.first)) and all(
                     expression_of(file, function, given) == expression for function, expression in right
                 ):
                     continue

@@ -120,16 +120,20 @@ class _File:
         """Both."""
         context = self._context()
         header = template(__name__, "guard.h.jinja").render(context)
-        code = "\n".join([*(code for _, code in context["cases"]), *(text for _, text in self.helpers.counts.values())])
+        asked = [code for _, code, _, _ in self._decisions()]
+        code = "\n".join([*asked, *self._counts()])
         functions = texts(code, self.helpers.arrays, self.of.prefix)
         source = template(__name__, "guard.c.jinja").render(
             context,
             functions=functions,
-            counts=[text for _, text in self.helpers.counts.values()],
+            counts=self._counts(),
             math=uses_math("\n".join([*functions, code])),
         )
         stem = f"{self.of.stem}_guard"
         return GuardFiles(stem, self.prefix, header, source, self._bound, self.others, tuple(self.sent))
+
+    def _counts(self) -> list[str]:
+        return [text for _, text in self.helpers.counts.values()]
 
     def _context(self) -> dict[str, object]:
         return {
@@ -154,8 +158,7 @@ class _File:
             "ready": flat(conjunction(self._ready())),
             "parts": [writer.name for writer in self.parts],
             "blind": self._blind(),
-            "cases": [(number, self._asked(each)) for number, each in enumerate(self.program.resting.questions)],
-            "decisions": self.program.resting.decisions,
+            "decisions": [*self._decisions()],
             "root": self.program.resting.root,
             "most": self.program.most[0],
             "lead": self.program.lead,
@@ -212,7 +215,14 @@ class _File:
         found = ((writer.name, [*writer.unfit()]) for writer in self.parts)
         return [(name, flat(disjunction(unfit))) for name, unfit in found if unfit]
 
+    def _decisions(self) -> Iterator[tuple[int, str, int, int]]:
+        """Each decision as a target, with what it asks, and where it leads if that is so, and if not."""
+        resting = self.program.resting
+        for number, (question, no, yes) in enumerate(resting.decisions):
+            yield ~number, self._asked(resting.questions[question]), yes, no
+
     def _asked(self, question: Asked) -> str:
+        """A condition that can stand before `?`."""
         asks, of, number = question
         not_started = f"{self.of.prefix.upper()}_NOT_STARTED"
         match asks:
@@ -224,16 +234,15 @@ class _File:
                 return f"monitors->{self.parts[of].name}.verdict == {not_started}"
             case Asks.STANDS:
                 name = f"monitors->{self.parts[of].name}"
-                return f"{name}.verdict != {not_started} && {name}.state == {number}u"
+                return f"({name}.verdict != {not_started} && {name}.state == {number}u)"
             case Asks.KNOWN:
-                return flat(conjunction(self._known(self.program.resting.conditions[of])))
+                return f"({flat(conjunction(self._known(self.program.resting.conditions[of])))})"
             case Asks.HOLDS:
-                return flat(self.speller.asked(self.program.resting.conditions[of].holds, True))
+                return f"({flat(self.speller.asked(self.program.resting.conditions[of].holds, True))})"
 
     def _known(self, held: Held) -> list[Code]:
-        flags = [Text(f"signals->has_{group.name}") for group in self.of.samples.sources(held.inputs)]
         numbers = [] if isinstance(held.known, Literal) else [self.speller.asked(held.known, True)]
-        return [*dict.fromkeys([*flags, *self.signals.ready(held.inputs)]), *numbers] or [Text("true")]
+        return [*self.signals.ready(held.inputs), *numbers] or [Text("true")]
 
     @cached_property
     def _bound(self) -> Cost:

@@ -203,7 +203,9 @@ def _held(plan: _Plan, of: Held) -> Group:
 
     known = function("known", of.known, "Whether a condition that the guard holds compares no NaN.")
     holds = function("holds", of.holds, "Whether it holds.")
-    return Group("HeldCondition(", (tuple_of(map(_input, of.inputs)), known, holds), ")")
+    has_first = any(value is not None for value in of.first)
+    first = [tuple_of(literal(v) if isinstance(v, str) else repr(v) for v in of.first)] if has_first else []
+    return Group("HeldCondition(", (tuple_of(map(_input, of.inputs)), known, holds, *first), ")")
 
 
 def _written(specification: PropertySpecification) -> Iterator[str]:

@@ -23,6 +23,7 @@ from ltlc.base.diagnostics import Diagnostic
 from ltlc.compiler import Compiled
 from ltlc.frontend.language import load_text, read_source
 from ltlc.frontend.language.suppression import unsuppressed
+from ltlc.interfaces.building.guards import NoRegionError, guard_entries, guard_programs
 from ltlc.interfaces.commands import arguments
 from ltlc.interfaces.commands.attesting import add_outputs, attest, refuse_unusable
 from ltlc.interfaces.commands.checked_evidence import check_evidence, documents_at
@@ -34,6 +35,7 @@ from ltlc.monitoring.campaigns.places import find
 from ltlc.semantics.certificate_text import in_words
 from ltlc.semantics.encodings import ENCODINGS, Encoding, encode
 from ltlc.semantics.ltl import TRUE
+from ltlc.semantics.region_text import guard_lines
 from ltlc.specification.specification import Specification
 
 
@@ -132,7 +134,7 @@ def _certify(
     if options.program:
         is_right = are_followed(checked, compiled, options.quiet) and is_right
     if code is not None:
-        is_right = _is_code_of(code, compiled, specification, options.quiet) and is_right
+        is_right = _is_code_of(code, compiled, specification, text, options.quiet) and is_right
     found = OK
     if documents:
         entries = {each.label: each.certified for each in checked if each.certified is not None}
@@ -194,9 +196,20 @@ def _compiled(specification: Specification, checked: Sequence[Checked], encoding
     ]
 
 
-def _is_code_of(code: Code, compiled: Sequence[Compiled], specification: Specification, quiet: bool) -> bool:
-    """Say of each file of `code` whether it is what ltlc emits for the certified monitors, and what was read back."""
+def _is_code_of(code: Code, compiled: Sequence[Compiled], specification: Specification, text: str, quiet: bool) -> bool:
+    """Say of each file of `code` whether it is what ltlc emits for the certified monitors, and what was read back.
+
+    So it is of guards and their certified regions, which are in `text`. Raises UnusableError.
+    """
     if len(compiled) < len(specification.properties):
         print("the code was not compared: not every property is certified")
         return False
-    return is_code_of(code, compiled, specification, quiet)
+    try:
+        entries = guard_entries(specification, compiled)
+        guards = guard_programs(specification, compiled, entries)
+    except NoRegionError as error:
+        raise UnusableError(str(error)) from None
+    if not all("\n".join(guard_lines(each)) in text for each in entries):
+        print("the code was not compared: the certificate has another region than guards that ltlc makes")
+        return False
+    return is_code_of(code, compiled, specification, quiet, guards)

@@ -8,11 +8,12 @@ from functools import partial
 
 from ltlc import __version__
 from ltlc.assurance.afresh import packages
-from ltlc.assurance.afresh.files import Code, compared, emitted
+from ltlc.assurance.afresh.files import Code, compared, emitted, guard_names
 from ltlc.assurance.afresh.outcomes import Equal, Unequal
 from ltlc.assurance.lowered.equality import compare
 from ltlc.assurance.lowered.letters import Judged
 from ltlc.assurance.reading.c.files import written as written_in_c
+from ltlc.assurance.reading.c.guards import Texts, difference
 from ltlc.assurance.reading.files import written
 from ltlc.assurance.reading.outcomes import Difference, ReadBack, Written
 from ltlc.assurance.reading.rust import written as written_in_rust
@@ -21,6 +22,7 @@ from ltlc.backends.spelling import NotInTargetError
 from ltlc.base.limits import Budget, Exceeded, run_all
 from ltlc.compiler import Compiled
 from ltlc.interfaces.commands.progress import progress, saying
+from ltlc.program.guards import GuardProgram
 from ltlc.specification.specification import Specification
 
 READING = Budget(seconds=60.0, megabytes=1024)
@@ -29,7 +31,13 @@ READING = Budget(seconds=60.0, megabytes=1024)
 WIDTH = 120
 
 
-def is_code_of(code: Code, compiled: Sequence[Compiled], specification: Specification, quiet: bool) -> bool:
+def is_code_of(
+    code: Code,
+    compiled: Sequence[Compiled],
+    specification: Specification,
+    quiet: bool,
+    guards: Sequence[GuardProgram] = (),
+) -> bool:
     """Say of each file whether it is what ltlc emits, and of each property whether its steps are its monitor.
 
     Only what is equal to what ltlc emits is read back: that is as large as it has to be, and nested no deeper. Raises
@@ -37,7 +45,7 @@ def is_code_of(code: Code, compiled: Sequence[Compiled], specification: Specific
     """
     try:
         with saying("comparing the code", quiet):
-            found = list(compared(code, emitted(code, compiled, specification)))
+            found = list(compared(code, emitted(code, compiled, specification, guards)))
     except NotInTargetError as error:
         print(f"the code was NOT compared: ltlc does not write these properties for this target, as they have {error}")
         return False
@@ -49,7 +57,9 @@ def is_code_of(code: Code, compiled: Sequence[Compiled], specification: Specific
     if not is_equal:
         print(f"NOT what ltlc {__version__} emits for these monitors{_of_another(code)}; nothing was read back")
         return False
-    return _are_read_back(code, compiled, specification, quiet)
+    return _are_read_back(code, compiled, specification, guards, quiet) and _are_guards_read_back(
+        code, compiled, guards
+    )
 
 
 def _of_another(code: Code) -> str:
@@ -71,15 +81,30 @@ def _lines(name: str, outcome: Equal | Unequal) -> list[str]:
     return [*lines, *([f"  not compared: {outcome.not_compared}"] if outcome.not_compared else [])]
 
 
-def _are_read_back(code: Code, compiled: Sequence[Compiled], specification: Specification, quiet: bool) -> bool:
+def _are_read_back(
+    code: Code, compiled: Sequence[Compiled], specification: Specification, guards: Sequence[GuardProgram], quiet: bool
+) -> bool:
     with progress("reading back the code", quiet) as watch:
         jobs = [
-            partial(_read_back, *pair) for pair in zip(compiled, _written(code, compiled, specification), strict=True)
+            partial(_read_back, *pair)
+            for pair in zip(compiled, _written(code, compiled, specification, guards), strict=True)
         ]
         found = run_all(jobs, READING, watch=watch)
     for each, outcome in zip(compiled, found, strict=True):
         print(f"{each.specification.label}: {_answer(outcome)}")
     return all(isinstance(outcome, ReadBack) for outcome in found)
+
+
+def _are_guards_read_back(code: Code, compiled: Sequence[Compiled], guards: Sequence[GuardProgram]) -> bool:
+    """Say of each guard whether it rests where its region has it; in Python, what was read back has that."""
+    found: Difference | None = None
+    if code.target == "c" and guards:
+        names = (f"{code.stem}.h", f"{code.stem}.c", *guard_names(code.stem))
+        found = difference(Texts(*(code.texts[name] for name in names)), guards[0], compiled)
+    wrong = "" if found is None else f"it does NOT rest as its region has it: {found}"
+    for guard in (guard for program in guards for guard in program.guards):
+        print(f"guard {guard.out}: {wrong or 'where it rests, read back, matches its region'}")
+    return found is None
 
 
 def _read_back(compiled: Compiled, part: Written | Difference) -> ReadBack | Difference:
@@ -94,7 +119,9 @@ def _judged(compiled: Compiled) -> Judged:
     return Judged(compiled.specification, compiled.formula, compiled.monitor)
 
 
-def _written(code: Code, compiled: Sequence[Compiled], specification: Specification) -> Sequence[Written | Difference]:
+def _written(
+    code: Code, compiled: Sequence[Compiled], specification: Specification, guards: Sequence[GuardProgram]
+) -> Sequence[Written | Difference]:
     match code.target:
         case "rust":
             (text,) = code.texts.values()
@@ -108,7 +135,7 @@ def _written(code: Code, compiled: Sequence[Compiled], specification: Specificat
             text = packages.as_one(code.texts)
         case _:
             (text,) = code.texts.values()
-    return written(text, [each.machine for each in compiled], [each.specification for each in compiled])
+    return written(text, [each.machine for each in compiled], [each.specification for each in compiled], guards)
 
 
 def _answer(outcome: ReadBack | Difference | Exceeded) -> str:

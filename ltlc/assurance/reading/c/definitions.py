@@ -129,6 +129,15 @@ class Definitions:
                 raise NotUnderstoodError(f"the function `{name}` is not the shared one")
         self.require_types({name: f"typedef struct {{ {members} }} {name};" for name, members in types.items()})
 
+    def know(self, source: str, types: Sequence[str]) -> Mapping[str, FuncDef]:
+        """The functions of a file beside these, with its `types`; those that files share are known from now on."""
+        found = {
+            node.decl.name: node for node in parsed(source, (*self._types, *types)).nodes if isinstance(node, FuncDef)
+        }
+        self.functions = {**{name: node for name, node in found.items() if name in self.shared}, **self.functions}
+        self._require_shared()
+        return found
+
     def _parsed(self, text: str) -> list[Node]:
         return list(parsed(text, self._types).nodes)
 
