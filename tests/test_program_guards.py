@@ -77,7 +77,7 @@ def test_what_a_plan_says_of_a_guard_is_read_back(name: str) -> None:
 
 def faults(code: str) -> Iterator[tuple[str, str]]:
     """Texts in the part about guards, and others in their place."""
-    part = code[code.index("GuardPlan(") :]
+    part = code[code.index("GuardPlan(") :].split("\n\n\n")[0]
     wrong = {
         "lead=1": "lead=2",
         "parts=(0": "parts=(1",
