@@ -28,6 +28,9 @@ charged: always battery > 0.1
 """
 """`charged` is about no command: it is watched. So long a bound passes only on the clock that the test sets."""
 
+STATUS = "watch_monitor: guard of /out"
+"""The guard's on /diagnostics."""
+
 
 @pytest.fixture(scope="module")
 def script(folder: Path) -> Path:
@@ -213,6 +216,8 @@ def test_the_fallback_leaves_by_itself_ahead_of_a_deadline(drive: Drive) -> None
 
 
 def test_a_node_that_was_stopped_over_a_deadline_has_lost_and_lets_nothing_forbidden_through(drive: Drive) -> None:
+    from diagnostic_msgs.msg import DiagnosticStatus
+
     begun(drive)
     drive.near(True)
     drive.heard(2)
@@ -227,7 +232,9 @@ def test_a_node_that_was_stopped_over_a_deadline_has_lost_and_lets_nothing_forbi
         assert changed is not None
         assert (changed["action"], changed["reason"]) == ("changed", f"the guard has lost: {why}")
     assert set(drive.left[before:]) <= {stop()}
-    drive.network.wait_until(lambda: "lost" in drive.network.message("watch_monitor: guard of /out"), "a diagnosis")
+    drive.network.wait_until(lambda: "lost" in drive.network.message(STATUS), "a diagnosis")
+    status = drive.network.statuses[STATUS]
+    assert (status.level, {each.key: each.value for each in status.values}["lost"]) == (DiagnosticStatus.ERROR, "1")
     assert drive.node.end() == 1
     assert guard_of(drive)["counts"]["lost"] == 1
     assert f"guard of /out, +400 s: lost: {why}\n" in drive.node.log
@@ -283,13 +290,13 @@ def test_a_node_refuses_to_guard_what_another_one_publishes(script: Path, networ
 
 
 def test_who_begins_to_publish_later_beside_the_guard_is_reported(drive: Drive) -> None:
+    from diagnostic_msgs.msg import DiagnosticStatus
     from geometry_msgs.msg import Twist
 
     begun(drive)
     other = drive.network.publisher(Twist, "/out")
-    drive.network.wait_until(
-        lambda: "/out is also published by /test" in drive.network.message("watch_monitor: guard of /out"), "a report"
-    )
+    drive.network.wait_until(lambda: "/out is also published by /test" in drive.network.message(STATUS), "a report")
+    assert drive.network.statuses[STATUS].level == DiagnosticStatus.WARN
     drive.network.node.destroy_publisher(other)
     assert drive.node.end() == 3
     assert re.search("/out is also published by (/test|another node), which is not guarded", drive.node.log)
