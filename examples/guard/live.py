@@ -31,7 +31,7 @@ from rclpy.signals import SignalHandlerOptions
 from scenes import SCENES
 from world import Message
 
-PATIENCE = 60.0
+PATIENCE = 300.0
 """How long to wait for the node, in s."""
 
 SETTLING = 1.5
@@ -39,9 +39,13 @@ SETTLING = 1.5
 
 
 class Topics:
-    """The way of commands over topics; the guard's node is called `guard`, and messages arrive as time goes by."""
+    """The way of commands over topics; messages arrive as time goes by.
 
-    def __init__(self, guard: str) -> None:
+    The guard's node is called `guard`, and is the `process`. Raises TimeoutError if it does not come up.
+    """
+
+    def __init__(self, guard: str, process: subprocess.Popen[bytes]) -> None:
+        self._process = process
         self.heard: list[tuple[int, Message]] = []
         self._node = rclpy.create_node("simulation")
         self._arrived: list[Message] = []
@@ -75,8 +79,8 @@ class Topics:
     def _wait(self, happens: Callable[[], object], what: str) -> None:
         deadline = monotonic() + PATIENCE
         while not happens():
-            if monotonic() > deadline:
-                raise TimeoutError(f"waited for {PATIENCE:.0f} s in vain: {what}")
+            if monotonic() > deadline or self._process.poll() is not None:
+                raise TimeoutError(f"waited in vain: {what}")
             sleep(0.05)
 
     def hear(self, time: int, message: Message) -> None:
@@ -149,7 +153,7 @@ def main() -> int:
         rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
         try:
             scene = SCENES[name]()
-            world = drive(scene, Topics(f"{name}_monitor"))
+            world = drive(scene, Topics(f"{name}_monitor", node))
         except TimeoutError as error:
             print(f"simulation: {error}", file=sys.stderr)
             return 2
