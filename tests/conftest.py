@@ -18,7 +18,7 @@ from ros_support import Network, Send, own_domain
 
 from ltlc.automata import Budget, Exceeded, Task, translate_all
 from ltlc.automata.batch import Known
-from ltlc.base.limits import Watch
+from ltlc.base.limits import Watch, children
 from ltlc.cli import ALLOCATIONS
 from ltlc.semantics.monitor import Monitor
 
@@ -119,6 +119,14 @@ def translated_once() -> Iterator[None]:
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("ltlc.compiler.translate_all", once)
+        yield
+
+
+@pytest.fixture(scope="session", autouse=True)
+def one_child() -> Iterator[None]:
+    """What is done in children is done by one: other processes run tests beside, and a fork of one so large is slow."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(children, "_cpus", lambda: 1)
         yield
 
 

@@ -99,6 +99,7 @@ def texts() -> Iterator[str]:
         yield path.read_text(encoding="utf-8")
 
 
+@cache
 def labels() -> list[str]:
     """The name of each property, for which nothing is compiled: every process that collects tests asks."""
     specifications = [load_text(Source("props.txt", text))[0] for text in texts()]

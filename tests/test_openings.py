@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from functools import cache
 from typing import Any
 
 import pytest
@@ -23,6 +24,7 @@ from ltlc.backends.python import standalone_classes
 from ltlc.base import fixes
 from ltlc.base.diagnostics import Severity
 from ltlc.base.source import Source
+from ltlc.compiler import Compiled
 from ltlc.frontend.language import load_text
 from ltlc.runtime.reports import failure_text
 from ltlc.runtime.times import Scale
@@ -138,8 +140,14 @@ RUNS = st.lists(
     min_size=1,
     max_size=9,
 )
-MONITORS = {text: from_text(SIGNALS + text)[0] for text in ORACLES}
-CLASSES = {text: emitted(compiled)["Line4"] for text, compiled in MONITORS.items()}
+
+
+@cache
+def built(text: str) -> tuple[Compiled, Any, list[str]]:
+    """The property `text`, the class that is emitted for it, and the names of what its steps take."""
+    (compiled,), _ = from_text(SIGNALS + text)
+    (written,) = standalone_classes([compiled], "props.txt")
+    return compiled, emitted([compiled])["Line4"], [name for name, _ in written.parameters]
 
 
 @pytest.mark.parametrize("text", ORACLES)
@@ -151,18 +159,18 @@ def test_a_verdict_is_that_of_the_run_with_the_values_at_its_openings(text: str,
         frozenset(holding(step, reading(run, n)) | {name for name in ("x", "y") if step[name]})
         for n, step in enumerate(run)
     )
-    [compiled] = MONITORS[text]
-    monitor = CLASSES[text]()
-    (written,) = standalone_classes([compiled], "props.txt")
+    compiled, class_, names = built(text)
+    monitor = class_()
     for end, step in enumerate(run, 1):
-        verdict = monitor.step(**{name: step[name] for name, _ in written.parameters})
+        verdict = monitor.step(**{name: step[name] for name in names})
         assert (verdict.value in ("satisfied", "presumably_satisfied")) == satisfies(
             word[:end], compiled.specification.property
         )
 
 
 def test_a_step_without_a_value_takes_none() -> None:
-    monitor = CLASSES[DOCK]()
+    _, class_, _ = built(DOCK)
+    monitor = class_()
     monitor.step(x=True, y=False, d=math.nan)
     assert monitor.step(x=True, y=False, d=1.0).value == "presumably_satisfied"
     assert monitor.step(x=False, y=False, d=1.05).value == "presumably_satisfied"

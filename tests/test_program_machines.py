@@ -8,7 +8,7 @@ from collections.abc import Iterable, Sequence
 from typing import Any
 
 import pytest
-from lowered import cases, value_of
+from lowered import cases, labels, value_of
 from program_reference import Run, is_nan, value
 from stepping import from_text
 
@@ -29,6 +29,7 @@ from ltlc.specification.expressions import IsTrue, New, Recent
 
 X, Y, ONE = Held("x", 0, DOUBLE), Held("y", 0, DOUBLE), Literal(1.0, DOUBLE)
 SUM = Apply(Primitive.ADD, (Y, ONE))
+EACH = pytest.mark.parametrize("number", range(len(labels())), ids=labels())
 
 
 def orderings() -> list[Expression]:
@@ -61,7 +62,7 @@ def test_what_may_be_nan_at_a_clock_step_is_not_turned_into_its_opposite() -> No
     assert not positive(Apply(Primitive.LESS, (ONE, kept))).holds
 
 
-@pytest.mark.parametrize("number", range(len(cases())), ids=[machine.label for machine, _, _ in cases()])
+@EACH
 def test_emitted_code_does_what_the_machine_does(number: int) -> None:
     machine, of, specification = cases()[number]
     (property_,) = load_plan([of], specification).properties
@@ -106,9 +107,11 @@ class ByDefinition:
         return self.take(self.run.hear(time, {atom.name for atom in specification.atoms if atom.condition in news}))
 
 
-@pytest.mark.parametrize("number", [n for n, (machine, _, _) in enumerate(cases()) if not machine.registers])
+@EACH
 def test_a_machine_does_what_the_monitor_does_on_a_run_in_time(number: int) -> None:
     machine, of, _ = cases()[number]
+    if machine.registers:
+        return  # the definition here knows letters, not values at openings
     for seed in range(3):
         chance, time, run, right = random.Random(seed), 0, Run(machine), ByDefinition(of)
         for _ in range(60):
