@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from ltlc.base.limits import Budget
-from ltlc.base.source import Source
+from ltlc.base.source import Source, Span
 from ltlc.frontend.language import load_text
 from ltlc.importing.conversion import Imported, convert
 from ltlc.importing.document import document, rate
@@ -91,6 +91,14 @@ FRETISH = {
         "(H <b><i>(( go & level = 3 ) -> lamp)</i></b>)",
         "always (go and level == 3 implies lamp)",
     ),
+    "in a mode, at its last position": (
+        "((LAST V ((! ((((! m) & (! LAST)) & (X m)) & (! LAST))) | (X (((m & (LAST | (X (! m)))) | LAST) V (((m & "
+        "(LAST | (X (! m)))) | LAST) -> lamp))))) & (m -> (((m & (LAST | (X (! m)))) | LAST) V (((m & (LAST | "
+        "(X (! m)))) | LAST) -> lamp))))",
+        "((H (((! m) & (Y m)) -> (Y lamp))) & (((! ((! m) & (Y m))) S ((! ((! m) & (Y m))) & (m & (Z (! m))))) "
+        "-> lamp))",
+        "always (not m and @{m, -1 else false} implies @{lamp, -1 else false})",
+    ),
     "without a formula of the future": (
         "",
         "(H ((Y (go & (Z (! go)))) -> (lamp | (! (Y TRUE)))))",
@@ -167,6 +175,9 @@ C2PO_SAID = {
     "m == Run": "always m == 2",
     "a => F[0,2] b": "always (a implies eventually b within 2 s)",
     "a -> b -> a": "always ((a implies b) implies a)",
+    "prev(true, a)": "never @{not a, -1 else false}",
+    "a ? b : low": "always ((a implies b) and (a or low))",
+    "(a ? v : w) > 3.5": "always ((a implies v > 3.5) and (a or w > 3.5))",
 }
 
 
@@ -280,6 +291,11 @@ HPL_SAID = {
     "after /a until /q: no /b": "after new a, (never new b) or (until new q, never new b)",
     "until /q: /a causes /b": "always (new a and historically (not new q) implies (until new b, never new q))",
     "globally: no /b {forall i in [0 to 3]: xs[@i] > 0}": "never (new b and all(b_xs[0:4] > 0))",
+    "globally: no /b {state = PRESSED}": "never (new b and b_state == PRESSED)",
+    "globally: no ~b {len(xs) > 3}": "never (new b and len(b_xs) > 3)",
+    "globally: no /b {exists i in markers: markers[@i].type in {1, 9}}": (
+        "never (new b and any(b_markers_type == 1 or b_markers_type == 9))"
+    ),
     "globally: no /b {exists x in xs: @x**2 > 4}": "never (new b and any(b_xs * b_xs > 4))",
     "after /a as A: no /b {data > @A.data}": "after new a, never (new b and b_data > @{a_data, opening})",
     "globally: /a as A {ok} causes /b {id = @A.id} within 2 s": (
@@ -304,6 +320,24 @@ def test_comments_of_hpl_are_the_id_and_the_text() -> None:
     found, written = imported("hpl", text)
     assert [each.requirement.id for each in found] == ["p1", "p2"]
     assert "## Stops\n" in written
+
+
+def test_a_misspelled_property_of_hpl_leaves_the_one_before_it() -> None:
+    found, _ = imported("hpl", "after /a\n  until /q: no /b\nglobaly: no /x\nglobally: no /c\n")
+    assert [bool(each.text) for each in found] == [True, False, True]
+    assert found[1].problem == "`globally` is expected in `globaly: no /x`"
+    assert found[1].requirement.place == Span(27, 41)
+
+
+def test_that_ticks_have_passed_has_a_name() -> None:
+    _, text = imported("c2po", "INPUT a, b: bool;\nFTSPEC F[2,3] a; G[2,9] b; F[3,4] a;")
+    assert "passed_2 = @{a or not a, -2 else false} # there was a tick so many ticks ago" in " ".join(text.split())
+    assert "always (passed_2 implies eventually a within 1 s)\n" in text
+    assert "after passed_2_2, always b\n" in text
+    assert "always (passed_3 implies" in text
+    specification, _ = load_text(Source("x", text))
+    assert specification is not None
+    assert len(specification.properties) == 3
 
 
 def test_an_answer_that_is_the_question_itself_is_none() -> None:
@@ -345,6 +379,7 @@ PROBLEMS = {
     "an unknown unit": ("stl", "eventually[0:5 parsec] p", "there is no unit `parsec`"),
     "an earlier message": ("hpl", "globally: /b as B requires /a {x < @B.x}", "values of an earlier message"),
     "a message that nobody names": ("hpl", "globally: no /a {x < @B.x}", "`@B` is no message"),
+    "the number of a position": ("c2po", "INPUT a: bool;\nFTSPEC TAU > 3;", "`TAU`"),
     "an array of C2PO for a condition": ("c2po", "INPUT xs: bool[2];\nFTSPEC xs;", "several values"),
     "a name that is two things": ("smv", "VAR n : 0..3;\nLTLSPEC G n", "is a integer, not a condition"),
 }

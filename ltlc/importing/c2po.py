@@ -12,7 +12,7 @@ from dataclasses import replace
 from ltlc.base.source import Source, Span
 from ltlc.dataclass import dataclass
 from ltlc.importing import formulas as f
-from ltlc.importing.infix import parse, parse_value
+from ltlc.importing.c2po_formulas import Formulas
 from ltlc.importing.names import Kind, Signals
 from ltlc.importing.operators import Form, Measure
 from ltlc.importing.requirement import Requirement, UnusableFileError
@@ -31,10 +31,6 @@ FORM = Form(
         "O": "once",
         "S": "since",
         "T": "trigger",
-        "&": "",
-        "|": "",
-        "~": "",
-        "^": "",
         "=>": "",
         "=": "",
     },
@@ -50,13 +46,13 @@ FORM = Form(
         "trigger": 5,
     },
     leads=True,
-    arrays=True,
 )
 
 KINDS = {"bool": Kind.BOOLEAN, "int": Kind.INTEGER, "float": Kind.NUMBER}
 
 _SECTION = re.compile(r"^[ \t]*(STRUCT|ENUM|INPUT|DEFINE|ATOMIC|FTSPEC|PTSPEC)\b", re.MULTILINE)
 _CONTRACT = re.compile(r"(?<![<=])=>")
+_PREDICTED = re.compile(r"\bwith\s+d\s*=.*\Z", re.DOTALL)
 
 
 @dataclass(frozen=True)
@@ -162,7 +158,7 @@ def _define(statement: _Statement, form: Form, signals: Signals, measure: Measur
     """`form` with a definition; conditions and numbers keep their names. One that cannot be read is skipped."""
     name, _, text = (part.strip() for part in statement.text.partition(":="))
     try:
-        value = parse_value(text, form, signals, measure)
+        value = Formulas(text, form, signals, measure).alone()
     except FormulaError:
         return form
     match value:
@@ -180,13 +176,18 @@ def _requirement(statement: _Statement, number: int, form: Form, signals: Signal
     label = re.match(r"\s*(\w+)\s*:(?!=)\s*", statement.text)
     name, formula = (label[1], statement.text[label.end() :]) if label else (f"{number}", statement.text)
     original = " ".join(statement.text.split())
+    predicted = _PREDICTED.search(formula)
+    formula = formula[: predicted.start()] if predicted else formula
     try:
+        if re.search(r"\bTAU\b", formula):
+            raise FormulaError("`TAU`, the number of the position, has no counterpart")
         assumed, contract = _CONTRACT.split(formula, maxsplit=1) if _CONTRACT.search(formula) else ("", formula)
-        meaning = parse(contract, form, signals, measure)
+        meaning = Formulas(contract, form, signals, measure).condition_alone()
         if assumed:
-            meaning = f.implies(parse(assumed, form, signals, measure), meaning)
+            meaning = f.implies(Formulas(assumed, form, signals, measure).condition_alone(), meaning)
     except FormulaError as error:
         return Requirement(name, "", original, statement.place, problem=str(error))
     whole = f.always(meaning)
-    notes = ("a contract: its guarantee where what it assumes holds",) if assumed else ()
+    notes: tuple[str, ...] = ("a contract: its guarantee where what it assumes holds",) if assumed else ()
+    notes += ("the prediction `with d` has no counterpart",) if predicted else ()
     return Requirement(name, "", original, statement.place, whole, (whole,), notes=notes)

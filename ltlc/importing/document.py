@@ -14,6 +14,7 @@ from ltlc.importing.names import Signals
 from ltlc.importing.writing import Reading
 from ltlc.semantics.durations import duration_text
 
+_PASSED = re.compile(r"@\{([^{}]+) or not \1, -(\d+) else false\}")
 _COUNTS = re.compile(r"@\{|\bwithin\b|\bfor\b")
 
 
@@ -25,7 +26,8 @@ def document(imported: Sequence[Imported], signals: Signals, reading: Reading, t
         f"Imported by `ltlc import` from {origin} ({tool}): {len(said)} of {len(imported)} requirements; "
         f"{equal} shown equal to their formulas."
     )
-    text = "\n".join(each.text for each in said)
+    texts, passed = _named([each.text for each in said], signals)
+    text = "\n".join((*texts, *passed))
     is_timed = reading.step is not None and _COUNTS.search(text) is not None
     if is_timed:
         lines += comment(
@@ -35,10 +37,10 @@ def document(imported: Sequence[Imported], signals: Signals, reading: Reading, t
     if declared := list(signals.declarations(text)):
         lines += comment("The file does not say where all signals come from: give each its topic and type.")
     lines += ["", f"_rate_ = {rate(reading.step)}"] if is_timed and reading.step else []
-    lines += ["", *declared]
+    lines += ["", *declared, *passed]
     labels: dict[str, int] = {}
-    for each in said:
-        lines += ["", *_property(each, signals, tool, labels)]
+    for each, written in zip(said, texts, strict=True):
+        lines += ["", *_property(each, written, signals, tool, labels)]
     lost = [each for each in imported if not each.text]
     lines += ["", "# Not imported:"] if lost else []
     for each in lost:
@@ -56,7 +58,18 @@ def rate(step: int | None) -> str:
     return text if Fraction(text) == frequency and "e" not in text else ""
 
 
-def _property(each: Imported, signals: Signals, tool: str, ids: dict[str, int]) -> Iterator[str]:
+def _named(texts: Sequence[str], signals: Signals) -> tuple[list[str], list[str]]:
+    """`texts` with a name for what says that there was a tick so many ticks ago; and the definitions of these names."""
+    names: dict[str, str] = {}
+    for found in _PASSED.finditer("\n".join(texts)):
+        if found[0] not in names:
+            names[found[0]] = signals.label(f"passed_{found[2]}")
+    for whole, name in names.items():
+        texts = [text.replace(whole, name) for text in texts]
+    return list(texts), [f"{name} = {whole}  # there was a tick so many ticks ago" for whole, name in names.items()]
+
+
+def _property(each: Imported, text: str, signals: Signals, tool: str, ids: dict[str, int]) -> Iterator[str]:
     """A property, with what is known of it in front."""
     requirement = each.requirement
     yield from (line.replace("#", "##", 1) for line in comment(requirement.text)) if requirement.text else ()
@@ -69,7 +82,7 @@ def _property(each: Imported, signals: Signals, tool: str, ids: dict[str, int]) 
     attributes = [f"id {_quoted(name)}"]
     attributes += [f"rationale {_quoted(requirement.rationale)}"] if requirement.rationale else []
     yield f"[{', '.join(attributes)}]"
-    yield f"{signals.label(requirement.id)}: {each.text}"
+    yield f"{signals.label(requirement.id)}: {text}"
 
 
 def _quoted(text: str) -> str:

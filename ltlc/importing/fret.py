@@ -206,8 +206,8 @@ def _at_end(past: f.Formula) -> f.Formula | None:
             return None if inner is None else f.negated(inner)
         case f.And(left, right) | f.Or(left, right):
             p, q = _at_end(left), _at_end(right)
-            if p is None or q is None:
-                return None
+            if p is None or q is None:  # what is asked of the last position, no infinite run has
+                return (p or q) if isinstance(past, f.And) else None
             return f.conjoined(p, q) if isinstance(past, f.And) else f.disjoined(p, q)
         case _:
             return None

@@ -15,9 +15,9 @@ from ltlc.base.source import Source, Span
 from ltlc.dataclass import dataclass
 from ltlc.frontend.starter.columns import message_with
 from ltlc.importing import formulas as f
-from ltlc.importing.infix import parse
+from ltlc.importing.hpl_conditions import Conditions
 from ltlc.importing.names import Kind, Signals
-from ltlc.importing.operators import Form, Measure
+from ltlc.importing.operators import Measure
 from ltlc.importing.requirement import Requirement
 from ltlc.importing.values import FormulaError, Value
 from ltlc.importing.writing import Reading, UnsayableError, Writer
@@ -25,15 +25,10 @@ from ltlc.inputs.messages.definitions import MessageTypes, shipped
 
 NAME = "HPL"
 
-FORM = Form(
-    words={"and": "and", "or": "or", "not": "not", "implies": "implies", "iff": "iff", "in": "in"},
-    levels={"implies": 1, "iff": 1, "or": 3, "and": 4},
-    functions=frozenset(
-        ("abs", "sqrt", "len", "sum", "max", "min", "log", "sin", "cos", "tan", "asin", "acos", "ceil")
-    ),
-)
-
 _PATTERNS = ("causes", "requires", "forbids")
+_CONSTANT = re.compile(r"[A-Z][A-Z0-9_]+")
+"""What a message calls a value; without its type, the value is not known."""
+
 _UNITS = {"ms": 10**6, "s": 10**9}
 _EVENT = re.compile(r"\s*([/~]?[A-Za-z]\w*(?:/[A-Za-z]\w*)*)(?:\s+as\s+(\w+))?\s*(?=(\{)?)")
 
@@ -82,6 +77,10 @@ class _Fields:
                 raise FormulaError(f"`@{alias}` is no message that comes before", offset)
             inner = self.value(aliases[alias], {}, path, offset)
             return Value(f"@{{{inner.text}, opening}}", inner.kind, name=inner.name)
+        if _CONSTANT.fullmatch(path):
+            self.signals.unknown.add(path)
+            self.signals.definitions.setdefault(path, f"{len(self.signals.unknown)}")
+            return Value(self.signals.name(path), Kind.NUMBER)
         written = f"{topic}.{path}"
         self.of.setdefault(topic, {})[path] = written
         return Value(self.signals.name(written), self.signals.kind(written), name=written)
@@ -109,8 +108,7 @@ def _properties(source: Source) -> Iterator[tuple[str, Span, dict[str, str]]]:
     metadata: dict[str, str] = {}
     start, offset, text = 0, 0, ""
     for line in [*source.text.splitlines(keepends=True), "globally"]:
-        begins = re.match(r"\s*(globally|after|until|#)", line)
-        if begins and text.strip() and (":" in re.sub(r"\{[^}]*\}", "", text) or offset == len(source.text)):
+        if text.strip() and (offset == len(source.text) or _is_over(text, line)):
             first = start + len(text) - len(text.lstrip())
             yield text.strip(), Span(first, first + len(text.strip())), metadata
             text, metadata = "", {}
@@ -120,6 +118,19 @@ def _properties(source: Source) -> Iterator[tuple[str, Span, dict[str, str]]]:
             start = offset if not text.strip() else start
             text = line if not text.strip() else text + line
         offset += len(line)
+
+
+def _is_over(text: str, line: str) -> bool:
+    """Whether a property ends before `line`: one that begins, even misspelled, where it is whole, or has its colon."""
+    if re.match(r"\s*(globally|after|until|#)", line):
+        return ":" in re.sub(r"\{[^}]*\}", "", text)
+    if not re.match(r"(?!(?:within|causes|requires|forbids|or|and)\b)\w", line):
+        return False
+    try:
+        _parsed(text)
+    except FormulaError:
+        return False
+    return True
 
 
 class _Scanner:
@@ -227,10 +238,18 @@ def _said(of: _Property, requirement: Requirement, fields: _Fields, measure: Mea
     found = replace(requirement, meaning=forms[0], forms=tuple(dict.fromkeys(forms)))
     if not any("opening}" in part.text for part in f.subformulas(forms[0]) if isinstance(part, f.Atom)):
         return found
-    try:
-        return replace(found, meaning=None, said=(Writer(Reading(None), "").property(forms[0]),), notes=(_VALUES,))
-    except UnsayableError as error:
-        raise FormulaError(str(error)) from None
+    return replace(found, meaning=None, said=(_first_said(forms),), notes=(_VALUES,))
+
+
+def _first_said(forms: list[f.Formula]) -> str:
+    """A property for one of several formulas that are equal. Raises FormulaError."""
+    problem = ""
+    for form in forms:
+        try:
+            return Writer(Reading(None), "").property(form)
+        except UnsayableError as error:
+            problem = problem or str(error)
+    raise FormulaError(problem)
 
 
 _VALUES = "it compares values of two messages, of which there is no formula to compare with"
@@ -242,8 +261,9 @@ def _formula(events: _Events, aliases: dict[str, str], fields: _Fields, measure:
     for event in events:
         happens = fields.news(event.topic)
         if event.condition.strip():
-            form = replace(FORM, resolve=partial(fields.value, event.topic, aliases))
-            happens = f.And(happens, parse(event.condition, form, fields.signals, measure))
+            resolve = partial(fields.value, event.topic, aliases)
+            read = Conditions(event.condition, fields.signals, measure, resolve)
+            happens = f.And(happens, read.condition_alone())
         found.append(happens)
     return reduce(f.disjoined, found, f.FALSE)
 
@@ -328,8 +348,9 @@ def _each(of: _Property, r: f.Formula, s: f.Formula, fields: _Fields) -> str:
 
 def _declare(topic: str, paths: dict[str, str], signals: Signals, types: MessageTypes) -> None:
     """Where the signals of a topic come from: HPL has its name and the fields, not the type."""
-    name = topic if topic[:1] in "/~" else f"/{topic}"
+    name = f"~/{topic[1:].lstrip('/')}" if topic[:1] == "~" else topic if topic[:1] == "/" else f"/{topic}"
     kinds = {path: signals.kind(written) for path, written in paths.items()}
+    paths = {path: of for path, of in paths.items() if not any(other.startswith(f"{path}[].") for other in paths)}
     steps = {tuple(re.sub(r"\[[^]]*\]", "", path).split(".")) for path in paths}
     message = None if steps <= {("data",)} else message_with(steps, types)
     if message is None:

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import re
-from dataclasses import replace
 from typing import NoReturn
 
 from ltlc.importing import formulas as f
 from ltlc.importing.lexing import Token, tokens_of
-from ltlc.importing.names import Kind, Signals
+from ltlc.importing.names import PREDICATES, Kind, Signals
 from ltlc.importing.operators import (
     ALONE,
     ARITHMETIC,
@@ -23,44 +22,46 @@ from ltlc.importing.operators import (
     Measure,
 )
 from ltlc.importing.values import (
-    AGGREGATES,
     COMPARISON,
     POWER,
     PRODUCT,
     SUM,
+    Choice,
     FormulaError,
     Part,
     Structure,
     Value,
-    array,
-    counted,
     power,
 )
-from ltlc.importing.writing import Reading, Writer
 
 
 def parse(text: str, form: Form, signals: Signals, measure: Measure) -> f.Formula:
     """The condition that `text` is. Raises FormulaError."""
-    parser = _Parser(tokens_of(text), form, signals, measure)
-    found = parser.condition(parser.expression(0))
-    parser.expect_end()
-    return found
+    return Parser(text, form, signals, measure).condition_alone()
 
 
 def parse_value(text: str, form: Form, signals: Signals, measure: Measure) -> Part:
     """The expression or condition that `text` is. Raises FormulaError."""
-    parser = _Parser(tokens_of(text), form, signals, measure)
-    found = parser.expression(0)
-    parser.expect_end()
-    return found
+    return Parser(text, form, signals, measure).alone()
 
 
-class _Parser:
-    def __init__(self, tokens: list[Token], form: Form, signals: Signals, measure: Measure) -> None:
-        self._tokens, self._at, self._depth = tokens, 0, 0
-        self._bound: dict[str, Part] = {}
-        self._slices: dict[str, str] = {}
+class Parser:
+    """Reads a formula of a form; what is the same in all forms."""
+
+    def __init__(self, text: str, form: Form, signals: Signals, measure: Measure) -> None:
+        self._tokens, self._at, self._depth = tokens_of(text), 0, 0
         self._form, self._signals, self._measure = form, signals, measure
+
+    def alone(self) -> Part:
+        """The expression or condition that the whole text is. Raises FormulaError."""
+        found = self.expression(0)
+        if self._token.kind != "end":
+            self._fail("an operator or the end")
+        return found
+
+    def condition_alone(self) -> f.Formula:
+        """The condition that the whole text is. Raises FormulaError."""
+        return self.condition(self.alone())
 
     @property
     def _token(self) -> Token:
@@ -85,11 +86,6 @@ class _Parser:
         if not self._take(text):
             self._fail(f"`{text}`")
 
-    def expect_end(self) -> None:
-        """Raises FormulaError if something is left."""
-        if self._token.kind != "end":
-            self._fail("an operator or the end")
-
     def _operator(self) -> str:
         """What the next token means between two parts, or in front of one; empty if nothing."""
         token = self._token
@@ -102,7 +98,7 @@ class _Parser:
 
     def condition(self, found: Part) -> f.Formula:
         """A condition, not a value. Raises FormulaError."""
-        if isinstance(found, Structure):
+        if isinstance(found, Structure | Choice):
             raise FormulaError("there are several values where a condition is expected", self._token.offset)
         if not isinstance(found, Value):
             return found
@@ -128,8 +124,19 @@ class _Parser:
             bounds = self._bounds() if operator in BETWEEN else None
             right = self.expression(level if operator in self._form.right else level + 1)
             found = self._combined(found, operator, bounds, right)
+        if not least and self._take("?"):
+            found = self._choice(self.condition(found))
         self._depth -= 1
         return found
+
+    def _choice(self, given: f.Formula) -> Part:
+        """What follows `given ?`: two conditions, or two values."""
+        then = self.expression(0)
+        self._need(":")
+        otherwise = self.expression(0)
+        if isinstance(then, Value) and isinstance(otherwise, Value) and not {then.kind, otherwise.kind} & PREDICATES:
+            return Choice(given, then, otherwise)
+        return f.And(f.implies(given, self.condition(then)), f.disjoined(given, self.condition(otherwise)))
 
     def _level(self, operator: str) -> int | None:
         if operator in COMPARED or operator == "in":
@@ -155,6 +162,9 @@ class _Parser:
         return BETWEEN[operator](p, q, start, stop)
 
     def _comparison(self, left: Part, operator: str, right: Part) -> f.Formula:
+        if isinstance(left, Choice):
+            then = f.implies(left.given, self._comparison(left.then, operator, right))
+            return f.And(then, f.disjoined(left.given, self._comparison(left.otherwise, operator, right)))
         if isinstance(left, Structure) and isinstance(right, Structure) and len(left.parts) == len(right.parts):
             found: f.Formula = f.TRUE
             for one, other in zip(left.parts.values(), right.parts.values(), strict=True):
@@ -212,7 +222,7 @@ class _Parser:
             case "sign" if token.text == "(":
                 found = self.expression(0)
                 self._need(")")
-                return self._selected(found)
+                return found
             case "sign" if token.text == "{":
                 return self._braces()
             case _:
@@ -223,21 +233,13 @@ class _Parser:
         word = token.text
         if word.lower() in ("true", "false"):
             return f.TRUE if word.lower() == "true" else f.FALSE
-        if word in ("forall", "exists") and self._form.resolve:
-            return self._quantified("all" if word == "forall" else "any")
         if word in self._signals.constants:
             constant = self._signals.constants[word]
             return Value(constant, Kind.STRING if constant.startswith('"') else Kind.NUMBER)
         if self._take("("):
             return self._call(token)
-        if word.partition(".")[0] in self._bound or word.partition(".")[0] in self._form.parts:
-            first, *fields = word.split(".")
-            found = self._bound[first] if first in self._bound else self._form.parts[first]
-            for field in fields:
-                found = self._member(found, field, token.offset)
-            return self._selected(found)
-        if self._form.resolve:
-            return self._bound.get(word) or self._field(word, token.offset)
+        if word in self._form.parts:
+            return self._form.parts[word]
         if self._take("["):
             index = self._token.text
             self._at += 1
@@ -245,125 +247,17 @@ class _Parser:
             word = f"{word}[{index}]"
         return Value(self._signals.name(word), self._signals.kind(word), name=word)
 
-    def _field(self, path: str, offset: int) -> Value:
-        """A path with its indexes; an index that a quantifier binds stands for the elements that it names."""
-        assert self._form.resolve is not None
-        part = ""
-        while self._token.text in ("[", "."):
-            if self._take("."):
-                path += f".{self._token.text}"
-                self._at += 1
-                continue
-            self._need("[")
-            index = self._token.text
-            if index in self._slices:
-                part = self._slices[index]
-            else:
-                path += f"[{index}]"
-            self._at += 1
-            self._need("]")
-        found = self._form.resolve(path, offset)
-        return replace(found, text=found.text + part) if part else found
-
-    def _quantified(self, word: str) -> f.Formula:
-        """`forall x in ARRAY: p`, `exists i in [0 to 4]: p`: of the elements of an array, or by their numbers."""
-        variable = f"@{self._token.text}"
-        self._at += 1
-        self._need_word("in")
-        before = set(self._signals.kinds)
-        if self._token.text in ("[", "!"):
-            self._slices[variable] = self._range()
-        else:
-            self._bound[variable], self._slices[variable] = self.expression(SUM), ""
-        self._need(":")
-        body = self.condition(self.expression(COMPARISON))
-        domain = self._bound.pop(variable, None)
-        del self._slices[variable]
-        arrays = [domain.name] if isinstance(domain, Value) else set(self._signals.kinds) - before
-        for name in arrays:
-            self._signals.kinds[name] = Kind.NUMBERS
-        return f.Atom(f"{word}({Writer(Reading(None), '').condition(body)})")
-
-    def _range(self) -> str:
-        """`[0 to 4]`, as a slice; with `!`, the end does not belong to it."""
-        offset = self._token.offset
-        first = int(self._take("!"))
-        self._need("[")
-        least = self.expression(SUM)
-        self._need_word("to")
-        most = self.expression(SUM)
-        self._need("]")
-        is_open = self._take("!")
-        if not isinstance(least, Value) or not isinstance(most, Value) or not least.text.isdigit():
-            raise FormulaError("a range has numbers", offset)
-        first += int(least.text)
-        if most.text.startswith("len(") and is_open:
-            return f"[{first}:]" if first else ""
-        if not most.text.isdigit():
-            raise FormulaError("a range ends at a number, or before a length", offset)
-        return f"[{first}:{int(most.text) + (not is_open)}]"
+    def _membership(self, left: Part) -> f.Formula:
+        """What follows `in`. Raises FormulaError."""
+        self._fail("another operator")
 
     def _need_word(self, word: str) -> None:
         if self._token.text != word:
             self._fail(f"`{word}`")
         self._at += 1
 
-    def _membership(self, left: Part) -> f.Formula:
-        """`x in {1, 2}`, `x in ![0 to 10]!`; with `!`, the end does not belong to it."""
-        if not isinstance(left, Value):
-            raise FormulaError("`in` needs a value", self._token.offset)
-        if self._take("{"):
-            items = [self.expression(SUM)]
-            while self._take(","):
-                items.append(self.expression(SUM))
-            self._need("}")
-            found: f.Formula = f.FALSE
-            for item in items:
-                found = f.disjoined(found, self._comparison(left, "==", item))
-            return found
-        is_open = self._take("!")
-        self._need("[")
-        least = self.expression(SUM)
-        self._need_word("to")
-        most = self.expression(SUM)
-        self._need("]")
-        below, above = "<" if is_open else "<=", "<" if self._take("!") else "<="
-        return f.And(self._comparison(least, below, left), self._comparison(left, above, most))
-
-    def _member(self, of: Part, name: str, offset: int) -> Part:
-        if not isinstance(of, Structure):
-            raise FormulaError(f"there is no `{name}` in a single value", offset)
-        return of.part(name, offset)
-
-    def _selected(self, found: Part) -> Part:
-        """What follows a structure: `[2]`, `[1..3]`, `.field`."""
-        while isinstance(found, Structure) and self._token.text in ("[", "."):
-            offset, is_field = self._token.offset, self._take(".")
-            if not is_field:
-                self._need("[")
-            name = self._token.text
-            self._at += 1
-            if not is_field and self._take("."):
-                self._need(".")
-                last = self._token.text
-                self._at += 1
-                if not (name + last).isdigit():
-                    raise FormulaError("a slice has numbers", offset)
-                found = array(found.part(str(n), offset) for n in range(int(name), int(last) + 1))
-            else:
-                found = found.part(name, offset)
-            if not is_field:
-                self._need("]")
-        return found
-
     def _braces(self) -> Part:
-        """`{a, b}` of C2PO is an array; `{x > 3}` and `{mode: "idle"}` of reelay are conditions."""
-        if self._form.arrays:
-            parts = [] if self._token.text == "}" else [self.expression(0)]
-            while self._take(","):
-                parts.append(self.expression(0))
-            self._need("}")
-            return self._selected(array(parts))
+        """`{x > 3}` and `{mode: "idle"}`, conditions as reelay has them."""
         found: f.Formula = f.TRUE
         while True:
             part = self.expression(0)
@@ -374,47 +268,17 @@ class _Parser:
                 self._need("}")
                 return found
 
-    def _aggregate(self, token: Token) -> f.Formula:
-        """`foreach(x: a)(p)` and the like: p of each element; `foratleast(x: a, 2)(p)`: of so many."""
-        variable = self._token.text
-        self._at += 1
-        self._need(":")
-        over, least = self.expression(0), ""
-        if self._take(","):
-            least = self._token.text
-            self._at += 1
-        self._need(")")
-        self._need("(")
-        if not isinstance(over, Structure):
-            raise FormulaError(f"`{token.text}` needs an array", token.offset)
-        begin, found, outer = self._at, [], self._bound.get(variable)
-        for part in over.parts.values():
-            self._at, self._bound[variable] = begin, part
-            found.append(self.condition(self.expression(0)))
-        self._bound.pop(variable)
-        if outer is not None:
-            self._bound[variable] = outer
-        self._need(")")
-        return counted(found, token.text, least, token.offset)
-
     def _call(self, token: Token) -> Part:
-        if token.text in AGGREGATES and self._form.arrays:
-            return self._aggregate(token)
-        arguments = [self.expression(0)]
-        while self._take(","):
-            arguments.append(self.expression(0))
-        self._need(")")
-        if token.text in self._form.structures:
-            fields = self._form.structures[token.text]
-            if len(fields) != len(arguments):
-                raise FormulaError(f"`{token.text}` has {len(fields)} fields", token.offset)
-            return self._selected(Structure(dict(zip(fields, arguments, strict=True))))
+        arguments = self._arguments()
+        if token.text in ("prev", "preBool") and len(arguments) == 2 and arguments[0] in (f.TRUE, f.FALSE):
+            before = self.condition(arguments[1])
+            return f.Previous(before) if arguments[0] == f.FALSE else f.Not(f.Previous(f.negated(before)))
         values = [each for each in arguments if isinstance(each, Value)]
         if len(values) < len(arguments):
             raise FormulaError(f"`{token.text}` of a condition cannot be said", token.offset)
         for each in values:
             if each.name:
-                self._signals.use(each.name, Kind.NUMBER)
+                self._signals.use(each.name, Kind.NUMBERS if token.text in ("len", "sum") else Kind.NUMBER)
         if token.text == "pow" and len(values) == 2:
             return power(values[0].within(POWER), values[1].text, token.offset)
         if token.text in ("prev", "preInt", "preReal") and len(values) == 2:
@@ -426,6 +290,14 @@ class _Parser:
             whole = f"{token.text}({listed})"
             return Value(self._signals.name(whole), self._signals.kind(whole), name=whole)
         return Value(f"{token.text}({listed})", Kind.NUMBER)
+
+    def _arguments(self) -> list[Part]:
+        """What is between the parentheses of a call."""
+        found = [self.expression(0)]
+        while self._take(","):
+            found.append(self.expression(0))
+        self._need(")")
+        return found
 
     def _bounds(self) -> Bounds | None:
         """An interval, if one comes next: `[0,5]`, `[0:5 s]`, `[5]`, `[<=5]`, `[=5]`."""

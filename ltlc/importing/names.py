@@ -22,7 +22,7 @@ class Kind(Enum):
     UNKNOWN = ""
 
 
-PREDICATES, NUMERIC = frozenset((Kind.BOOLEAN,)), frozenset((Kind.NUMBER, Kind.INTEGER))
+PREDICATES = frozenset((Kind.BOOLEAN,))
 
 
 @dataclass
@@ -39,6 +39,8 @@ class Signals:
     """Words that are values: `idle` is `"idle"`."""
     definitions: dict[str, str] = field(default_factory=dict)
     """Names of expressions, and these."""
+    unknown: set[str] = field(default_factory=set)
+    """Definitions whose values the file does not have."""
     _names: dict[str, str] = field(default_factory=dict)
     _taken: starter.Names = field(default_factory=starter.Names)
 
@@ -72,7 +74,8 @@ class Signals:
         used = {}
         for written, expression in reversed(self.definitions.items()):
             if self._names[written] in needed:
-                used[written] = f"{self._names[written]} = {expression}"
+                remark = "  # a constant of its message: write its value" if written in self.unknown else ""
+                used[written] = f"{self._names[written]} = {expression}{remark}"
                 needed |= set(re.findall(r"\w+", expression))
         for written, name in self._names.items():
             if name in needed and written not in self.definitions:

@@ -7,7 +7,7 @@ from dataclasses import field
 
 from ltlc.dataclass import dataclass
 from ltlc.importing import formulas as f
-from ltlc.importing.values import POWER, PRODUCT, SUM, Part, Value
+from ltlc.importing.values import POWER, PRODUCT, SUM, Part
 
 Bounds = tuple[int, int | None]
 Measure = Callable[[str, str], int]
@@ -19,19 +19,16 @@ class Form:
     """How formulas are written: what each word and sign means, and how tightly what stands between two parts binds.
 
     The signs of `and`, `or`, `not` and comparisons are the same in all forms. Those in `right` are right-associative.
-    Where `leads` is set, an `until` asks for its left side from the beginning of its interval on. With `arrays`, braces
-    hold the elements of one; `structures` have the fields of types, and `parts` what is defined. With `resolve`, names
-    are paths of fields, which it gives a value, and sets, ranges and quantifiers are those of HPL.
+    Where `leads` is set, an `until` asks for its left side from the beginning of its interval on. `structures` have the
+    fields of types, and `parts` what is defined.
     """
 
     words: Mapping[str, str]
     levels: Mapping[str, int]
     right: frozenset[str] = frozenset()
     leads: bool = False
-    arrays: bool = False
     structures: Mapping[str, Sequence[str]] = field(default_factory=dict)
     parts: Mapping[str, Part] = field(default_factory=dict)
-    resolve: Callable[[str, int], Value] | None = None
     functions: frozenset[str] = frozenset(("abs", "sqrt", "min", "max", "exp", "log", "sign", "floor", "ceil"))
 
 

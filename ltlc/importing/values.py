@@ -50,7 +50,16 @@ class Structure:
         return self.parts[name]
 
 
-Part = Value | f.Formula | Structure
+@dataclass(frozen=True)
+class Choice:
+    """One of two values: `then` where `given` holds."""
+
+    given: f.Formula
+    then: Value
+    otherwise: Value
+
+
+Part = Value | f.Formula | Structure | Choice
 
 
 def array(parts: Iterable[Part]) -> Structure:
