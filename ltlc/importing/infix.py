@@ -107,7 +107,8 @@ class Parser:
         elif found.kind is not Kind.BOOLEAN:
             raise FormulaError(f"`{found.text}` is a value where a condition is expected", self._token.offset)
         if found.name and self._signals.kind(found.name) is not Kind.BOOLEAN:
-            raise FormulaError(f"`{found.name}` is a {self._signals.kind(found.name).name.lower()}, not a condition")
+            kind = self._signals.kind(found.name).name.lower()
+            raise FormulaError(f"`{found.name}` has values of the kind {kind}, not true and false")
         return f.Atom(found.text)
 
     def expression(self, least: int) -> Part:
