@@ -167,7 +167,7 @@ class Driven:
 
     def run(self, chance: random.Random, events: int) -> Counter[str]:
         """One run of so many events; what the guards did, how often, and `violated` if a property is."""
-        run = self._begun()
+        run = self.begun()
         self.judge.reset()
         found: Counter[str] = Counter()
         time = 0
@@ -185,7 +185,7 @@ class Driven:
 
     def held_back(self, chance: random.Random, events: int) -> Iterator[tuple[list[Event], Done]]:
         """The commands of a run that violate nothing by themselves and do not pass, with what was heard before."""
-        run = self._begun()
+        run = self.begun()
         heard: list[Event] = []
         for time, values in self.rows(chance, events):
             before = len(run.done)
@@ -197,7 +197,8 @@ class Driven:
             heard += run.taken
             run.taken.clear()
 
-    def _begun(self) -> GuardedRun:
+    def begun(self) -> GuardedRun:
+        """A run at its beginning, of which commands have the names of what is let through."""
         sent = {
             name: name
             for name, s in self.signals.items()

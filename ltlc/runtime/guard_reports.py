@@ -23,10 +23,14 @@ ACTION_WORDS = {
 
 def counts_text(out: str, counts: Mapping[Action, int], lost: str = "it lost") -> str:
     """How often the guard of the topic `out` did what; that it `lost`, if it did."""
+    return f"guard of {out}: {actions_text(counts, lost)}"
+
+
+def actions_text(counts: Mapping[Action, int], lost: str = "it lost") -> str:
+    """How often what was done; that it `lost`, if it did."""
     did = (action for action in Action if action is not Action.LOST)
     shown = (f"{counts[action]:,} {ACTION_WORDS[action]}" for action in did)
-    end = f"; {lost}" if counts[Action.LOST] else ""
-    return f"guard of {out}: {', '.join(shown)}{end}"
+    return f"{', '.join(shown)}{f'; {lost}' if counts[Action.LOST] else ''}"
 
 
 def deed_text(deed: Deed) -> str:

@@ -174,8 +174,8 @@ class Game:
         changed = self.arena.loose if topic is None else {a for a, of in self.arena.read.items() if topic in of}
         return self._before({a: None if a in changed | self.arena.loose else a for a in self.atoms}, good)
 
-    def after_message(self, topic: str, letters: Diagram) -> Diagram:
-        """What may be held after a message on `topic`, if `letters` were before."""
+    def after_message(self, topic: str | None, letters: Diagram) -> Diagram:
+        """What may be held after a message on `topic`, or after some time, if `letters` were before."""
         for level, atom in enumerate(self.atoms):
             if topic in self.arena.read[atom] or atom in self.arena.loose:
                 letters = self.any_of(self.diagrams.given({level: holds}, letters) for holds in (False, True))

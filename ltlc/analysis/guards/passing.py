@@ -26,6 +26,7 @@ from ltlc.semantics.words import Letter
 from ltlc.specification import evaluation
 from ltlc.specification.arenas import Property, arena_of, conditions_held, is_in_game, together
 from ltlc.specification.atoms import Atom
+from ltlc.specification.expressions import Current, Past
 from ltlc.specification.guards import Guard
 from ltlc.specification.specification import topics_of
 
@@ -116,7 +117,7 @@ def shortest_play(solution: Solution, out: str, commands: Diagram) -> tuple[Lett
     d, found = solution.game.diagrams, []
     for step, letters in harmless(solution, out):
         bad = d.conjunction(d.conjunction(letters, commands), d.negation(solution.resting(step.joint)))
-        letter = letter_of(solution, bad, {})
+        letter = letter_of(solution.game, bad, {})
         if letter is not None:
             found.append((letter, play(solution, step.joint, letter)))
     return min(found, key=lambda each: len(each[1]), default=None)
@@ -173,12 +174,20 @@ def word_of(setting: Setting, first: Letter, turns: Sequence[Turn]) -> tuple[Let
     return tuple(letter & held for letter in (first, *(turn.letter for turn in turns)))
 
 
-def rows_along(setting: Setting, first: Letter, turns: Sequence[Turn], rows: Sequence[Values]) -> list[Values] | None:
-    """`rows` along a play, where each message changes what is read on its topic; None if those are other letters."""
+def rows_along(
+    setting: Setting, first: Letter, turns: Sequence[Turn], rows: Sequence[Values], *, linked: bool = False
+) -> list[Values] | None:
+    """`rows` along a play, where each message changes what is read on its topic; None if those are other letters.
+
+    If `linked`, the sample before is that of the row before.
+    """
     found: list[Values] = []
     topics = (None, *(turn.topic for turn in turns))
     for topic, letter, row in zip(topics, word_of(setting, first, turns), rows, strict=True):
         values = {v: now if not found or topic in topics_of(v.signal) else found[-1][v] for v, now in row.items()}
+        if linked and found:
+            pasts = (v for v in row if isinstance(v, Past) and v.samples == 1 and topic in topics_of(v.signal))
+            values |= {v: found[-1].get(Current(v.signal), values[v]) for v in pasts}
         if evaluation.letter(setting.atoms, values) != letter:
             return None
         found.append(values)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ltlc.analysis.guards.game import Step
+from ltlc.analysis.guards.game import Game, Step
 from ltlc.analysis.guards.solution import Solution, by_clocks
 from ltlc.dataclass import dataclass
 from ltlc.semantics.arenas import Joint, Outcome
@@ -53,15 +53,14 @@ def _moves(wider: Solution, joint: Joint, letter: Letter, topic: str | None) -> 
             continue
         for step, letters in steps.items():
             lost = game.diagrams.conjunction(letters, game.diagrams.negation(wider.answered(step.joint)))
-            after = letter_of(wider, lost, {atom: atom in letter for atom in kept})
+            after = letter_of(game, lost, {atom: atom in letter for atom in kept})
             if after is not None:
                 tried = wider.acts(joint, passing) if passing else wider.answers(step.joint)
                 yield Turn(topic, step, after, tuple(number for number, _ in tried))
 
 
-def letter_of(solution: Solution, letters: Diagram, answers: dict[str, bool]) -> Letter | None:
+def letter_of(game: Game, letters: Diagram, answers: dict[str, bool]) -> Letter | None:
     """One of the `letters` that exist which gives these `answers`; None if there is none."""
-    game = solution.game
     known = {level: answers[atom] for level, atom in enumerate(game.atoms) if atom in answers}
     left = game.diagrams.given(known, game.diagrams.conjunction(letters, game.possible))
     found = next((path for path, holds in game.diagrams.paths(left) if holds), None)

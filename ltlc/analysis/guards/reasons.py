@@ -33,6 +33,12 @@ class _Found:
     rows: list[Values] | None
 
 
+def setting_of(conditions: Mapping[str, Atom], *, is_known: bool) -> Setting:
+    """What numbers for runs are found with in which `conditions` are followed, if `is_known` what they read."""
+    atoms = tuple(conditions.values())
+    return Setting(atoms, letters_of([atoms], lambda _: None), linked=False, openings={}, counts=not is_known)
+
+
 @dataclass
 class Reasons:
     """The plays that guards avoid that follow `conditions`, as their game is solved; each is looked for once."""
@@ -43,9 +49,7 @@ class Reasons:
 
     @cached_property
     def _setting(self) -> Setting:
-        atoms = tuple(self.conditions.values())
-        counts = bool(self.solution.game.arena.loose)
-        return Setting(atoms, letters_of([atoms], lambda _: None), linked=False, openings={}, counts=counts)
+        return setting_of(self.conditions, is_known=not self.solution.game.arena.loose)
 
     @cached_property
     def _places(self) -> Places:
@@ -83,7 +87,7 @@ class Reasons:
         game, d = self.solution.game, self.solution.game.diagrams
         answers = {atom: atom in letter for atom in game.atoms if atom not in unknown}
         for place in self._places.around(joint):
-            held = letter_of(self.solution, d.negation(self.solution.resting(place)), answers)
+            held = letter_of(game, d.negation(self.solution.resting(place)), answers)
             if held is not None:
                 turns = play(self.solution, place, held)
                 return _Found(held, turns, rows_of(self._setting, word_of(self._setting, held, turns), None))

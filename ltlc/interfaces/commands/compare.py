@@ -1,4 +1,4 @@
-"""`ltlc compare`: encodings of the same sentence, or formulas, side by side; or ways to make a monitor, on a corpus."""
+"""`ltlc compare`: encodings of a sentence, formulas, or guards side by side; or ways to make a monitor, on a corpus."""
 
 from __future__ import annotations
 
@@ -15,6 +15,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """What `ltlc compare` takes."""
     _add_subjects(
         parser.add_argument_group("what to compare, one of these").add_mutually_exclusive_group(required=True)
+    )
+    parser.add_argument(
+        "other", metavar="OTHER", nargs="?", type=Path, help="compare the guards of PROPS with those of this file"
     )
     parser.add_argument(
         "--encodings",
@@ -70,6 +73,8 @@ def run(options: argparse.Namespace) -> int:
     """Print the comparison; 0 if all of it was decided, 3 if a limit was met, 1 if two procedures disagree."""
     if options.recording and options.specification is None:
         return unusable("formulas have no signals to record: --recording needs PROPS")
+    if options.other is not None and (unfit := _unfit_for_guards(options)):
+        return unusable(f"the guards of two files are compared without {unfit}")
     try:
         return _run(options)
     except SpotMissing as error:
@@ -82,6 +87,8 @@ def _run(options: argparse.Namespace) -> int:
     from ltlc.base.errors import UnusableInput
 
     try:
+        if options.other is not None:
+            return _compare_guards(options)
         return _compare(options) if options.corpus is None else _measure(options)
     except UnusableInput as error:
         report(error.diagnostics)
@@ -109,6 +116,30 @@ def _compare(options: argparse.Namespace) -> int:
     report(table.diagnostics)
     print(table.formatted(options.format), end="")
     return OK if table.is_complete else UNDECIDED
+
+
+def _unfit_for_guards(options: argparse.Namespace) -> str:
+    """An option that has no meaning beside a second file; empty if there is none."""
+    given = {
+        "--encodings": options.encodings,
+        "--encoding-file": options.encoding_file,
+        "--reading": options.reading != "both",
+        f"--format {options.format}": options.format not in ("text", "json"),
+    }
+    return next((name for name, is_given in given.items() if is_given), "")
+
+
+def _compare_guards(options: argparse.Namespace) -> int:
+    """Put the guards of two files side by side."""
+    from ltlc.interfaces.api.compare_guards import compare_guards
+
+    with saying("comparing the guards", options.quiet):
+        found = compare_guards(
+            options.specification, options.other, options.recording, options.msg_path, Budget(*options.budget)
+        )
+    report(found.diagnostics)
+    print(found.text() if options.format == "text" else found.json(), end="")
+    return OK if found.is_complete else UNDECIDED
 
 
 def _measure(options: argparse.Namespace) -> int:

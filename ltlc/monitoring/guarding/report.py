@@ -84,12 +84,13 @@ class GuardReport:
 
     def _document(self, guard: Guard, session: Session) -> dict[str, Any]:
         own = self.of(guard)
-        listed = {a.value: [_report(each, session) for each in own if each.deed.action is a] for a in Action}
+        listed = {a.value: [entry(each, session) for each in own if each.deed.action is a] for a in Action}
         commands = guard.out if self.is_unguarded else guard.raw
         return {"raw": guard.raw, "out": guard.out, "commands_from": commands, **listed}
 
 
-def _report(done: Done, session: Session) -> dict[str, Any]:
+def entry(done: Done, session: Session) -> dict[str, Any]:
+    """What a guard did once, as JSON."""
     return {
         **deed_report(done.deed, session.beginning),
         "reason": done.reason(),
