@@ -26,7 +26,7 @@ COMMANDS = {
     "mine": "find the tightest values for `?` with which recorded runs pass",
     "matrix": "show which requirement is verified by which property, with which results, and what is not covered",
     "certify": "check certificates made by someone else, trusting neither Spot nor their monitors",
-    "compare": "compare encodings of the same sentence, or formulas, and show runs that distinguish them",
+    "compare": "compare encodings of a sentence, formulas, or guards, and show runs that distinguish them",
     "explain": "explain properties in plain English, with example runs; or show the page of a diagnostic",
     "lsp": "run the language server for editors (LSP), over stdin and stdout",
     "serve": "serve a page for trying out properties in the browser; nothing leaves this machine",
