@@ -128,7 +128,7 @@ def compare_guards(
     reports = [[_judged(*each, path, message_paths) for each in pairs] for path in recordings]
     found = []
     for out in (out for out in left if out in right):
-        sides = [_side(name, of, some[out]) for name, of, some in zip(names, files, (left, right), strict=True)]
+        sides = _side(names[0], files[0], left[out]), _side(names[1], files[1], right[out])
         differences, undecided = _differences(*sides, out)
         compared = [_compared(out, names, pair) for pair in reports]
         found.append(OutCompared(out, names, tuple(differences), undecided, tuple(compared)))
