@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import random
+from functools import cache
 from itertools import permutations
 from pathlib import Path
 
@@ -28,6 +29,9 @@ TEXTS = {
     "longer": CMD + SCAN + "p: always (min(scan) < 0.5 implies eventually speed <= 0.2 within 200 ms)",
     "strict": CMD + SCAN + "p: always (min(scan) < 0.5 implies speed <= 0.2)",
     "at once": EXAMPLES["near, an instant later"].text,
+    "latched": CMD + SCAN + "p: after min(scan) < 0.5, always (not new speed or speed == 0)",
+    "latched, and slow": CMD + SCAN + "p: after min(scan) < 0.5, always (not new speed or speed == 0)\n"
+    "q: always (new speed implies speed <= 0.5)",
     "slew": CMD + SCAN + "p: always abs(speed - @{speed, -1 else 0}) <= 0.25\nq: never (new scan and min(scan) > 9)",
     "no fallback": CMD.replace(" else stop", "")
     + SCAN
@@ -38,12 +42,19 @@ TEXTS = {
 PAIRS = list(permutations(TEXTS, 2))
 
 
+@cache
+def driven(name: str) -> Driven:
+    """The guard of that name, to be driven."""
+    return Driven(Example(TEXTS[name], SPEEDS | SCANS))
+
+
+@cache
 def side(name: str) -> Side:
     """The guard of that name, as one of two."""
     specification, problems = load_text(Source(name, TEXTS[name]))
     assert specification is not None, problems
     compiled, _ = compile_specification(specification, EPISODE, Budget())
-    (some,) = Driven(Example(TEXTS[name], SPEEDS | SCANS)).guarding.solved
+    (some,) = driven(name).guarding.solved
     assert isinstance(some.find_play, Reasons)
     properties = tuple(Property(each.specification, each.formula, each.monitor) for each in compiled)
     return Side(name, some.guards, properties, some.find_play)
@@ -51,12 +62,13 @@ def side(name: str) -> Side:
 
 def passes(name: str, rows: list[tuple[int, dict[str, object]]]) -> list[bool]:
     """Whether the guard of that name lets each command through, of messages that come at these times."""
-    run = Driven(Example(TEXTS[name], SPEEDS | SCANS)).begun()
+    run = driven(name).begun()
     for time, values in rows:
         run.row(time, values, ())
     return [each.deed.action is Action.PASSED for each in run.done if each.deed.command is not None]
 
 
+@cache
 def found(one: str, two: str) -> dict[str, Difference]:
     return {each.passes: each for each in Beside(side(one), side(two), "/cmd_vel").differences()}
 
@@ -88,8 +100,8 @@ def test_where_no_run_is_shown_none_makes_a_difference(one: str, two: str) -> No
     if one in found(one, two):
         return
     for seed in range(share_of(10)):
-        drawn = list(Driven(Example(TEXTS[one], SPEEDS | SCANS)).rows(random.Random(seed), 60))
-        runs = [Driven(Example(TEXTS[name], SPEEDS | SCANS)).begun() for name in (one, two)]
+        drawn = list(driven(one).rows(random.Random(seed), 60))
+        runs = [driven(name).begun() for name in (one, two)]
         for time, values in drawn:
             for run in runs:
                 run.row(time, values, ())

@@ -183,12 +183,23 @@ class Beside:
 
     def _both(self, step: Step, topic: str | None) -> Diagram:
         """The letters at which both sides do the same: they are silent, let a command through, or begin alike."""
+        if not self._may_have_begun(step.joint):
+            return self._game.diagrams.false
         resting = self._game.all_of(view.resting(step.joint) for view in self._views)
         if topic not in self._game.arena.outs or Outcome.WAITING not in step.joint.standings:
             return resting
         if topic not in self._common:
             return self._game.diagrams.false
         return self._game.diagrams.conjunction(resting, self._common[topic][0])
+
+    def _may_have_begun(self, joint: Joint) -> bool:
+        """Whether some topics have spoken on which all begin that have: what waits for no more than another, has."""
+        outs = self._game.arena.outs
+        pairs = zip(self._game.arena.parts, joint.standings, strict=True)
+        waits = [(part.waits, at is Outcome.WAITING) for part, at in pairs if part.waits.isdisjoint(outs)]
+        return not any(
+            is_waiting and not has_begun and own <= other for own, is_waiting in waits for other, has_begun in waits
+        )
 
     @cached_property
     def _common(self) -> dict[str, tuple[Diagram, Fallback]]:
@@ -222,8 +233,9 @@ class Beside:
         return Difference(one.side.name, other.side.name, reason, tuple(events), example)
 
     def _words(self, letter: Letter) -> str:
-        """What the conditions on a command say."""
-        own = [atom for atom in self._conditions if self._out in self._game.arena.read.get(atom, ())]
+        """What the conditions of properties say of a command."""
+        stated = {atom.name for view in self._views for p in view.side.properties for atom in p.specification.atoms}
+        own = [a for a in self._conditions if a in stated and self._out in self._game.arena.read.get(a, ())]
         return listed([condition_text(a, self._conditions, holds=a in letter) for a in own] or ["anything holds"])
 
     def _sent(self, turn: Turn) -> str:
