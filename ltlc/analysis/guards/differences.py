@@ -20,14 +20,14 @@ from ltlc.analysis.guards.solution import MOST_PLACES
 from ltlc.analysis.thresholds import Values
 from ltlc.analysis.wording import listed
 from ltlc.dataclass import dataclass
-from ltlc.semantics.arenas import Joint, Outcome
+from ltlc.semantics.arenas import Joint, Outcome, Place
 from ltlc.semantics.diagrams import Diagram, of_predicate
 from ltlc.semantics.ltl import FALSE
 from ltlc.semantics.region_text import is_ordered
 from ltlc.semantics.words import Letter
 from ltlc.specification.arenas import Property, arena_of, conditions_held, is_in_game
 from ltlc.specification.atoms import Atom
-from ltlc.specification.expressions import Current, Field, openings, operands
+from ltlc.specification.expressions import Current, Field, operands
 from ltlc.specification.expressions import reads as reads_in
 from ltlc.specification.fallbacks import value_in
 from ltlc.specification.guards import Fallback, Guard
@@ -51,12 +51,16 @@ class Side:
 
 @dataclass(frozen=True)
 class Difference:
-    """A run at whose end the guard of one file lets a command through, and the other one's does not, for a `reason`."""
+    """A run at whose end the guard of one file lets a command through, and the other one's does not, for a `reason`.
+
+    Its `events` are messages on `topics`, or time passes, where that is None. The first row of the `example` is before.
+    """
 
     passes: str
     refuses: str
     reason: str
     events: tuple[str, ...]
+    topics: tuple[str | None, ...]
     example: Example | None
 
 
@@ -99,7 +103,8 @@ class _View:
             return f"it would violate {listed([f'`{label}`' for label in violated])}"
         held = frozenset(name for name, other in self._names.items() if other in letter)
         play = self.side.reasons(own, held, frozenset(), {})
-        assert play is not None, "what rests lets the command through"
+        if play is None:
+            return "a violation could no longer be avoided after it"
         return f"a violation of {play.labels} could no longer be avoided after it: {play.text(whole=False)}"
 
 
@@ -124,6 +129,10 @@ class Beside:
             )
             for side in sides
         ]
+        if self._game.arena.loose:
+            raise NotDecidedError("one of them counts, or reads values at openings")
+        self.is_partial = False
+        """Whether runs were left out in which clocks run side by side."""
         self._seen: dict[Joint, Diagram] = {}
         self._layers: list[dict[Joint, Diagram]] = []
 
@@ -164,7 +173,7 @@ class Beside:
         for joint, letters in layer.items():
             for topic in self._topics(joint):
                 for step, led in self._after(joint, letters, topic):
-                    good = d.conjunction(led, self._both(step, topic))
+                    good = d.conjunction(led, self._both(joint, step, topic))
                     seen = self._game.any_of(of.get(step.joint, d.false) for of in (self._seen, found))
                     new = d.conjunction(good, d.negation(seen))
                     if self._game.exists(new):
@@ -181,9 +190,9 @@ class Beside:
         for step, led in self._game.steps(joint, topic).items():
             yield step, self._game.all_of((held, led, self._game.possible))
 
-    def _both(self, step: Step, topic: str | None) -> Diagram:
+    def _both(self, joint: Joint, step: Step, topic: str | None) -> Diagram:
         """The letters at which both sides do the same: they are silent, let a command through, or begin alike."""
-        if not self._may_have_begun(step.joint):
+        if not self._may_have_begun(step.joint) or (topic is None and not self._may_pass(joint, step)):
             return self._game.diagrams.false
         resting = self._game.all_of(view.resting(step.joint) for view in self._views)
         if topic not in self._game.arena.outs or Outcome.WAITING not in step.joint.standings:
@@ -200,6 +209,20 @@ class Beside:
         return not any(
             is_waiting and not has_begun and own <= other for own, is_waiting in waits for other, has_begun in waits
         )
+
+    def _may_pass(self, joint: Joint, step: Step) -> bool:
+        """Whether it is known that the clocks pass first that do: all that run have started with the same event."""
+        parts, running = self._game.arena.parts, dict[tuple[int, int], tuple[object, int]]()
+        for k, at in enumerate(joint.standings):
+            for n, tracker in enumerate(parts[k].time.trackers if isinstance(at, Place) else ()):
+                state = at.reset.states[n]
+                if tracker.bounds and tracker.is_running(state):
+                    running[k, n] = (tracker.subject, parts[k].waits), tracker.bounds[state.passed]
+        first = min((bound for _, bound in running.values()), default=0)
+        is_known = len({event for event, _ in running.values()}) <= 1
+        self.is_partial |= bool(step.passing) and not is_known
+        passing = {of for of, (_, bound) in running.items() if bound == first}
+        return not step.passing or (is_known and step.passing == passing)
 
     @cached_property
     def _common(self) -> dict[str, tuple[Diagram, Fallback]]:
@@ -228,9 +251,9 @@ class Beside:
         events = [self._sent(turn) or event for turn, event in zip(turns, events, strict=True)]
         reason = other.reason(step.joint, turns[-1].letter)
         example = self._example(before, turns, events)
-        if example is None:
-            events[-1] += f" where {self._words(turns[-1].letter)}"
-        return Difference(one.side.name, other.side.name, reason, tuple(events), example)
+        events[-1] += f" where {self._words(turns[-1].letter)}"
+        topics = tuple(turn.topic for turn in turns)
+        return Difference(one.side.name, other.side.name, reason, tuple(events), topics, example)
 
     def _words(self, letter: Letter) -> str:
         """What the conditions of properties say of a command."""
@@ -260,7 +283,7 @@ class Beside:
         for start, letters in layer.items():
             for topic in self._topics(start):
                 for step, led in self._after(start, letters, topic):
-                    good = d.conjunction(led, self._both(step, topic))
+                    good = d.conjunction(led, self._both(start, step, topic))
                     is_it = {atom: atom in letter for atom in self._game.atoms}
                     if step.joint == joint and letter_of(self._game, good, is_it) is not None:
                         turn = Turn(topic, step, letter, ())
@@ -288,7 +311,8 @@ class Beside:
             rows = None if found is None else rows_along(self._setting, first, turns, found, linked=True)
             if rows is not None:
                 values = shown(self._setting, rows)
-                return Example("", tuple(values[0]), tuple(tuple(row.values()) for row in values), ("before", *events))
+                remarks = ("before", *events[:-1], self._sent(turns[-1]))
+                return Example("", tuple(values[0]), tuple(tuple(row.values()) for row in values), remarks)
         return None
 
 
@@ -310,8 +334,6 @@ def _names(side: Side, conditions: Mapping[str, Atom], game: Game) -> dict[str, 
     found = {name: name for name in side.reasons.solution.game.atoms}
     for name, atom in side.reasons.conditions.items():
         same = (other for other, one in conditions.items() if one.condition == atom.condition)
-        if any(True for operand in operands(atom.condition) for _ in openings(operand)):
-            raise NotDecidedError(f"{side.name} reads values at openings")
         if (other := next(same, None)) is None:
             raise NotDecidedError(f"`{name}` is not the same condition in both files")
         found[name] = other

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -22,10 +23,13 @@ from ltlc.interfaces.api.guard import guarding_of
 from ltlc.interfaces.api.prepare import Prepared, prepare, read
 from ltlc.monitoring.guarding.arrangement import Solved
 from ltlc.monitoring.guarding.compared import Compared
-from ltlc.monitoring.guarding.recording import Guarding
-from ltlc.monitoring.judging.run import Judge, RunReport
+from ltlc.monitoring.guarding.recording import GuardedRun, Guarding
+from ltlc.monitoring.judging.run import Judge, RunReport, readings
+from ltlc.runtime.guarding import Action
+from ltlc.runtime.times import SECOND
 from ltlc.semantics.encodings import EPISODE
 from ltlc.specification.arenas import Property
+from ltlc.specification.specification import topics_of
 
 MOST_LISTED = 10
 """So many commands of a recording are listed that only one guard lets through."""
@@ -35,7 +39,8 @@ MOST_LISTED = 10
 class OutCompared:
     """The guards of two files that send on `out`: runs at whose end only one lets a command through, and recordings.
 
-    If a run was not found, and there may be one, `undecided` says why.
+    A run without an example may not be one that can happen. If a run was not found, and there may be one, `undecided`
+    says why.
     """
 
     out: str
@@ -51,14 +56,15 @@ class OutCompared:
         for name, other in (self.names, self.names[::-1]):
             if (difference := found.get(name)) is not None:
                 yield ""
-                yield f"{name} lets a command through that {other} does not: {difference.reason}"
+                lets = "lets" if difference.example is not None else "may let"
+                yield f"{name} {lets} a command through that {other} does not: {difference.reason}"
                 yield from (f"  {line}" for line in _run_lines(difference))
             elif not self.undecided:
                 yield ""
                 yield f"{name} lets nothing through that {other} does not, as long as they have done the same before"
         if self.undecided:
             yield ""
-            yield f"what they let through was not compared: {self.undecided}"
+            yield f"not compared: {self.undecided}"
         for each in self.recordings:
             yield ""
             yield from each.lines(MOST_LISTED)
@@ -101,7 +107,9 @@ class GuardsCompared:
     @property
     def is_complete(self) -> bool:
         """Whether all was decided."""
-        return not any(each.undecided for each in self.topics)
+        return not any(
+            each.undecided or any(difference.example is None for difference in each.differences) for each in self.topics
+        )
 
     def text(self) -> str:
         """It as text."""
@@ -126,10 +134,12 @@ def compare_guards(
     names = (str(one), str(two))
     pairs = list(zip(files, guardings, strict=True))
     reports = [[_judged(*each, path, message_paths) for each in pairs] for path in recordings]
+    judges = [Judge(each.compiled, each.specification) for each in files]
+    replays = {name: Replay(of, judge) for name, of, judge in zip(names, guardings, judges, strict=True)}
     found = []
     for out in (out for out in left if out in right):
         sides = _side(names[0], files[0], left[out]), _side(names[1], files[1], right[out])
-        differences, undecided = _differences(*sides, out)
+        differences, undecided = _differences(*sides, out, replays)
         compared = [_compared(out, names, pair) for pair in reports]
         found.append(OutCompared(out, names, tuple(differences), undecided, tuple(compared)))
     told = [d for each in files for d in each.diagnostics]
@@ -151,12 +161,58 @@ def _side(name: str, prepared: Prepared, some: Solved) -> Side:
     return Side(name, some.guards, properties, some.find_play)
 
 
-def _differences(left: Side, right: Side, out: str) -> tuple[list[Difference], str]:
+def _differences(left: Side, right: Side, out: str, runs: Mapping[str, Replay]) -> tuple[list[Difference], str]:
     """Shortest runs at whose end only one lets a command through, or why they are not known."""
     try:
-        return Beside(left, right, out).differences(), ""
+        beside = Beside(left, right, out)
+        found = beside.differences()
     except NotDecidedError as error:
         return [], str(error)
+    found = [each if _is_shown(each, runs) else replace(each, example=None) for each in found]
+    is_open = beside.is_partial and len(found) < len({left.name, right.name})
+    return found, "runs in which several clocks are running when one passes its bound" if is_open else ""
+
+
+def _is_shown(difference: Difference, runs: Mapping[str, Replay]) -> bool:
+    """Whether the example of a difference, if there is one, makes it."""
+    return runs[difference.passes].passes(difference) and not runs[difference.refuses].passes(difference)
+
+
+@dataclass(frozen=True)
+class Replay:
+    """Tries runs that were found on the guards of a file."""
+
+    guarding: Guarding
+    judge: Judge
+
+    def passes(self, difference: Difference) -> bool:
+        """Whether the guard lets the last command of a run through, of whose values there is an example."""
+        if difference.example is None:
+            return False
+        plan = self.judge.plan(())
+        topics = {name: topic for name in readings(plan) for topic in topics_of(self.judge.signals[name])}
+        outs = {guard.out: guard.raw for guard in self.guarding.specification.guards}
+        own = {name: name for name, topic in topics.items() if topic in outs}
+        run, time = GuardedRun(self.guarding, self.judge.signals, own, plan), SECOND
+        rows = [dict(zip(difference.example.signals, row, strict=True)) for row in difference.example.steps]
+        before = [topic for topic in dict.fromkeys(topics.values()) if topic not in (*outs, difference.topics[0])]
+        events = [*((topic, rows[0]) for topic in before), *zip(difference.topics, rows[1:], strict=True)]
+        for topic, row in events:
+            if topic is None:
+                time = run.due() or time
+                run.act(time)
+                continue
+            values = {name: _sample(row[name]) for name, of in topics.items() if of == topic and name in row}
+            run.row(time, values, (outs.get(topic, topic),))
+            time += 1
+        return bool(run.done) and run.done[-1].deed.action is Action.PASSED
+
+
+def _sample(value: Any) -> Any:
+    """A value of an example as the runtime has it."""
+    if isinstance(value, list):
+        return tuple(map(_sample, value))
+    return float(value) if isinstance(value, int) and not isinstance(value, bool) else value
 
 
 def _judged(prepared: Prepared, guarding: Guarding, path: Path, message_paths: Sequence[str]) -> RunReport:
