@@ -22,8 +22,10 @@ from ltlc.analysis.wording import listed
 from ltlc.dataclass import dataclass
 from ltlc.semantics.arenas import Joint, Outcome, Place
 from ltlc.semantics.diagrams import Diagram, of_predicate
+from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.ltl import FALSE
 from ltlc.semantics.region_text import is_ordered
+from ltlc.semantics.timed_atoms import Age
 from ltlc.semantics.words import Letter
 from ltlc.specification.arenas import Property, arena_of, conditions_held, is_in_game
 from ltlc.specification.atoms import Atom
@@ -53,7 +55,8 @@ class Side:
 class Difference:
     """A run at whose end the guard of one file lets a command through, and the other one's does not, for a `reason`.
 
-    Its `events` are messages on `topics`, or time passes, where that is None. The first row of the `example` is before.
+    Its `events` are messages on `topics`, or time passes, where that is None; each comes after one of the `delays`. The
+    first row of the `example` is before.
     """
 
     passes: str
@@ -61,6 +64,7 @@ class Difference:
     reason: str
     events: tuple[str, ...]
     topics: tuple[str | None, ...]
+    delays: tuple[Nanoseconds, ...]
     example: Example | None
 
 
@@ -146,17 +150,26 @@ class Beside:
                 self._seen[joint] = self._game.any_of((letters, self._seen.get(joint, self._game.diagrams.false)))
             if len(self._seen) > MOST_PLACES:
                 raise NotDecidedError(f"the game of both has more than {MOST_PLACES:,} places")
-            for one, other in (self._views, self._views[::-1]):
-                if one.side.name not in found and (difference := self._first(layer, one, other)) is not None:
-                    found[one.side.name] = difference
+            self._look(found, len(self._layers), begun=True)
             layer = self._next(layer)
+        for depth in range(1, len(self._layers) + 1):
+            self._look(found, depth, begun=False)
         return list(found.values())
 
-    def _first(self, layer: Mapping[Joint, Diagram], one: _View, other: _View) -> Difference | None:
-        """A command that `one` lets through and the `other` does not, from where both have come."""
+    def _look(self, found: dict[str, Difference], depth: int, *, begun: bool) -> None:
+        """Look for what was not `found` yet in the layer so deep: once all have `begun`, or where something begins."""
+        for one, other in (self._views, self._views[::-1]):
+            if one.side.name not in found:
+                difference = self._first(self._layers[:depth], one, other, begun)
+                found |= {} if difference is None else {one.side.name: difference}
+
+    def _first(
+        self, layers: Sequence[Mapping[Joint, Diagram]], one: _View, other: _View, begun: bool
+    ) -> Difference | None:
+        """A command that `one` lets through and the `other` does not, from the last of the `layers`."""
         d = self._game.diagrams
-        for joint, letters in layer.items():
-            if joint.sent is None:
+        for joint, letters in layers[-1].items():
+            if joint.sent is None or (Outcome.WAITING not in joint.standings) != begun:
                 continue
             for step, led in self._after(joint, letters, self._out):
                 if Outcome.WAITING in step.joint.standings:
@@ -164,7 +177,7 @@ class Beside:
                 passes = d.conjunction(one.resting(step.joint), d.negation(other.resting(step.joint)))
                 letter = letter_of(self._game, d.conjunction(led, passes), {})
                 if letter is not None:
-                    return self._difference(joint, step, letter, one, other)
+                    return self._difference(layers, joint, Turn(self._out, step, letter, ()), one, other)
         return None
 
     def _next(self, layer: Mapping[Joint, Diagram]) -> dict[Joint, Diagram]:
@@ -192,7 +205,7 @@ class Beside:
 
     def _both(self, joint: Joint, step: Step, topic: str | None) -> Diagram:
         """The letters at which both sides do the same: they are silent, let a command through, or begin alike."""
-        if not self._may_have_begun(step.joint) or (topic is None and not self._may_pass(joint, step)):
+        if not self._may_have_begun(joint, step.joint) or (topic is None and not self._may_pass(joint, step)):
             return self._game.diagrams.false
         resting = self._game.all_of(view.resting(step.joint) for view in self._views)
         if topic not in self._game.arena.outs or Outcome.WAITING not in step.joint.standings:
@@ -201,9 +214,15 @@ class Beside:
             return self._game.diagrams.false
         return self._game.diagrams.conjunction(resting, self._common[topic][0])
 
-    def _may_have_begun(self, joint: Joint) -> bool:
-        """Whether some topics have spoken on which all begin that have: what waits for no more than another, has."""
+    def _may_have_begun(self, before: Joint, joint: Joint) -> bool:
+        """Whether some topics have spoken on which all begin that have: what waits for no more than another, has.
+
+        What begins does so in time: no clock has passed a bound before.
+        """
         outs = self._game.arena.outs
+        begun = (at for was, at in zip(before.standings, joint.standings, strict=True) if was is Outcome.WAITING)
+        if any(state.passed for at in begun if isinstance(at, Place) for state in at.reset.states):
+            return False
         pairs = zip(self._game.arena.parts, joint.standings, strict=True)
         waits = [(part.waits, at is Outcome.WAITING) for part, at in pairs if part.waits.isdisjoint(outs)]
         return not any(
@@ -213,11 +232,13 @@ class Beside:
     def _may_pass(self, joint: Joint, step: Step) -> bool:
         """Whether it is known that the clocks pass first that do: all that run have started with the same event."""
         parts, running = self._game.arena.parts, dict[tuple[int, int], tuple[object, int]]()
-        for k, at in enumerate(joint.standings):
-            for n, tracker in enumerate(parts[k].time.trackers if isinstance(at, Place) else ()):
+        for k, at in ((k, at) for k, at in enumerate(joint.standings) if isinstance(at, Place)):
+            for n, tracker in enumerate(parts[k].time.trackers):
                 state = at.reset.states[n]
                 if tracker.bounds and tracker.is_running(state):
-                    running[k, n] = (tracker.subject, parts[k].waits), tracker.bounds[state.passed]
+                    subject = tracker.subject
+                    event = subject.news if isinstance(subject, Age) else (subject, parts[k].waits)
+                    running[k, n] = event, tracker.bounds[state.passed]
         first = min((bound for _, bound in running.values()), default=0)
         is_known = len({event for event, _ in running.values()}) <= 1
         self.is_partial |= bool(step.passing) and not is_known
@@ -239,21 +260,28 @@ class Beside:
                 found.setdefault(out, (led, fallback))
         return found
 
-    def _difference(self, joint: Joint, step: Step, letter: Letter, one: _View, other: _View) -> Difference:
-        turns = [Turn(self._out, step, letter, ())]
-        before = self._before(self._layers[-1][joint], turns[0])
-        for layer in self._layers[-2::-1]:
+    def _difference(
+        self, layers: Sequence[Mapping[Joint, Diagram]], joint: Joint, last: Turn, one: _View, other: _View
+    ) -> Difference:
+        turns = [last]
+        before = self._before(layers[-1][joint], last)
+        for layer in layers[-2::-1]:
             turn, joint, letter = self._led(layer, joint, before)
             turns.insert(0, turn)
             before = letter
         arena = self._game.arena
         events = [move_of(arena, turn, {}).event for turn in turns]
         events = [self._sent(turn) or event for turn, event in zip(turns, events, strict=True)]
-        reason = other.reason(step.joint, turns[-1].letter)
+        reason = other.reason(last.step.joint, last.letter)
         example = self._example(before, turns, events)
         events[-1] += f" where {self._words(turns[-1].letter)}"
-        topics = tuple(turn.topic for turn in turns)
-        return Difference(one.side.name, other.side.name, reason, tuple(events), topics, example)
+        topics, delays = tuple(turn.topic for turn in turns), tuple(map(self._delay, turns))
+        return Difference(one.side.name, other.side.name, reason, tuple(events), topics, delays, example)
+
+    def _delay(self, turn: Turn) -> Nanoseconds:
+        """How long before a turn nothing comes: until the clocks have passed their bounds that do."""
+        parts = self._game.arena.parts
+        return 1 + max((parts[k].time.trackers[n].bounds[-1] for k, n in turn.step.passing), default=0)
 
     def _words(self, letter: Letter) -> str:
         """What the conditions of properties say of a command."""

@@ -196,15 +196,13 @@ class Replay:
         run, time = GuardedRun(self.guarding, self.judge.signals, own, plan), SECOND
         rows = [dict(zip(difference.example.signals, row, strict=True)) for row in difference.example.steps]
         before = [topic for topic in dict.fromkeys(topics.values()) if topic not in (*outs, difference.topics[0])]
-        events = [*((topic, rows[0]) for topic in before), *zip(difference.topics, rows[1:], strict=True)]
-        for topic, row in events:
-            if topic is None:
-                time = run.due() or time
-                run.act(time)
-                continue
-            values = {name: _sample(row[name]) for name, of in topics.items() if of == topic and name in row}
-            run.row(time, values, (outs.get(topic, topic),))
-            time += 1
+        moves = zip(difference.topics, difference.delays, rows[1:], strict=True)
+        for topic, delay, row in [*((topic, 1, rows[0]) for topic in before), *moves]:
+            time += delay
+            run.act(time)
+            if topic is not None:
+                values = {name: _sample(row[name]) for name, of in topics.items() if of == topic and name in row}
+                run.row(time, values, (outs.get(topic, topic),))
         return bool(run.done) and run.done[-1].deed.action is Action.PASSED
 
 
