@@ -122,6 +122,11 @@ AS_WRITTEN: dict[str, tuple[str, set[str]]] = {
         "p: always (speed > min(scan) implies eventually speed <= min(scan) within 200 ms)",
         {TAKES_BACK},
     ),
+    "what follows for any command, but is not known of a fallback": (
+        "else stop\np: always (new speed and min(scan) > 3 implies speed == 0 or speed * min(scan) <= 0)\n"
+        "q: always (min(scan) > 3 implies eventually (speed == 0 or speed * min(scan) <= 0) within 50 ms)",
+        set(),
+    ),
     "a heartbeat": ("else stop\np: always age(speed) <= 100 ms", set()),
     "what counts": ("else stop\np: never once new speed 4 times within 10 s", {PASSES_NOTHING}),
     "a value at an opening": (

@@ -381,7 +381,11 @@ PROBLEMS = {
     "a message that nobody names": ("hpl", "globally: no /a {x < @B.x}", "`@B` is no message"),
     "the number of a position": ("c2po", "INPUT a: bool;\nFTSPEC TAU > 3;", "`TAU`"),
     "an array of C2PO for a condition": ("c2po", "INPUT xs: bool[2];\nFTSPEC xs;", "several values"),
-    "a name that is two things": ("smv", "VAR n : 0..3;\nLTLSPEC G n", "`n` has values of the kind integer, not true and false"),
+    "a name that is two things": (
+        "smv",
+        "VAR n : 0..3;\nLTLSPEC G n",
+        "`n` has values of the kind integer, not true and false",
+    ),
 }
 
 

@@ -69,7 +69,7 @@ def arena_of(guards: Sequence[Guard], properties: Iterable[Property]) -> Arena:
     outs = tuple(guard.out for guard in guards)
     sendings = _sendings(guards)
     atoms, effects = _with_effects(guards, (each.specification for each in parts))
-    read = {name: frozenset(_topics(atom)) for name, atom in atoms.items()}
+    read = {name: frozenset(topics_read(atom)) for name, atom in atoms.items()}
     counts = {count.name: frozenset[str]() for p in parts for count in counts_of(p.formula)}
     loose = frozenset({*counts, *(name for name, atom in atoms.items() if _has_openings(atom))})
     unknown = dict.fromkeys(loose)
@@ -161,5 +161,6 @@ def _has_openings(atom: Atom) -> bool:
     return any(True for operand in operands(atom.condition) for _ in openings(operand))
 
 
-def _topics(atom: Atom) -> Iterator[str]:
+def topics_read(atom: Atom) -> Iterator[str]:
+    """The topics of what a condition reads."""
     return (topic for read in _reads(atom) for topic in topics_of(read.signal))

@@ -16,12 +16,14 @@ from ltlc.analysis.guards.solution import Solution, TooManyPlacesError, solve
 from ltlc.analysis.subjects import Study, Subject
 from ltlc.analysis.thresholds import Values
 from ltlc.analysis.wording import listed
+from ltlc.automata import translate
 from ltlc.dataclass import dataclass
 from ltlc.runtime.plays import Move
 from ltlc.runtime.sampling import Value
 from ltlc.semantics.arenas import Arena, Outcome, Part, Ticks
 from ltlc.semantics.diagrams import Diagram, Diagrams
 from ltlc.semantics.durations import duration_text
+from ltlc.semantics.monitor import Monitor
 from ltlc.semantics.words import Letter
 from ltlc.specification import evaluation
 from ltlc.specification.arenas import Property, arena_of, conditions_held, is_in_game, together
@@ -57,7 +59,13 @@ class Guarded:
         for subject in self.subjects:
             if subject.monitor is None:
                 raise NotDecidedError(f"`{subject.label}` has no monitor")
-            yield Property(subject.specification, subject.formula, subject.monitor)
+            yield Property(subject.specification, subject.formula, self._monitor(subject, subject.monitor))
+
+    @staticmethod
+    def _monitor(subject: Subject, found: Monitor) -> Monitor:
+        """That of the letters that run: z3 may know fewer, over which some atoms say nothing that fallbacks decide."""
+        letters = subject.specification.alphabet
+        return found if subject.alphabet == letters else translate(subject.formula, letters)
 
     @property
     def kept(self) -> tuple[Subject, ...]:

@@ -34,6 +34,7 @@ from ltlc.semantics.properties import (
     Until,
     Within,
 )
+from ltlc.specification.arenas import topics_read
 from ltlc.specification.specification import Path, parts
 
 
@@ -48,8 +49,21 @@ def ask(study: Study, subject: Subject) -> Iterator[Finding]:
     dead = [event.path[:-1] for event in impossible(study, subject) if event.opens] if found else []
     dead += [interval.path[:-1] for interval in broken_at_once(subject)]
     for path, truth in found:
-        if not any(path[: len(scope)] == scope for scope in dead) and not _leaves_again(subject, path):
+        if any(path[: len(scope)] == scope for scope in dead) or _leaves_again(subject, path):
+            continue
+        if not _fallbacks_need(study, subject, path):
             yield _finding(study, subject, path, truth)
+
+
+def _fallbacks_need(study: Study, subject: Subject, path: Path) -> bool:
+    """Whether the part asks for what a fallback of a guard sends.
+
+    After `stop` a guard knows the first of `speed == 0 or speed * x <= 0`, but not the second, from which it follows.
+    """
+    sent = {guard.out for guard in study.specification.guards if guard.fallbacks}
+    asked = ltl.atoms(_predicate(part_at(subject.specification.property, path)))
+    atoms = (atom for atom in subject.specification.atoms if atom.name in asked)
+    return any(not sent.isdisjoint(topics_read(atom)) for atom in atoms)
 
 
 def _leaves_again(subject: Subject, path: Path) -> bool:
