@@ -328,3 +328,19 @@ def test_the_play_for_which_a_command_is_held_back_violates_the_properties_that_
             verdicts = driven.judge.verdicts
             assert {verdicts[label] for label in done.play.moves[-1].violated} == {ltlc.Verdict.VIOLATED}, done
     assert seen
+
+
+def test_a_command_that_is_held_back_does_not_begin_the_session(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "props.txt").write_text(
+        "guard /cmd_vel_raw to /cmd_vel else stop\nmessage stop {}\ndecl speed /cmd_vel geometry_msgs/Twist.linear.x\n"
+        f"{ASKED}decl go /go std_msgs/Bool.data\n"
+        "beats: always age(speed) <= 100 ms\nslow: always (new speed and not go implies speed == 0)\n"
+    )
+    (tmp_path / "drive.csv").write_text("time,asked,go\n0,1,\n1,1,\n2,,true\n2.05,1,\n2.2,,\n")
+    arguments = ["run", "--guard", str(tmp_path / "props.txt"), str(tmp_path / "drive.csv"), "--format", "json"]
+    assert main(arguments) == 0
+    [guard] = json.loads(capsys.readouterr().out)["guard"]
+    assert [len(guard[each]) for each in ("held_back", "passed", "sent", "lost")] == [2, 1, 1, 0]
+    assert guard["sent"][0]["time"] == 2.14

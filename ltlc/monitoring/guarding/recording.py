@@ -232,8 +232,10 @@ class GuardedRun:
             guards.hear(time, topic, values)
         whole = {out: samples.get(kept_name(raw)) for raw, out in self.raws.items()}
         for out, values in commands.items():
-            self._whole = whole[out]
+            self._whole, is_first = whole[out], self._guards is None
             self._begun(time).command(time, out, values)
+            if is_first and not self.taken:
+                self._guards = None
 
     def act(self, time: Nanoseconds) -> None:
         """Do all that is due up to and including `time`, in its order."""
@@ -250,7 +252,7 @@ class GuardedRun:
         return None if self._guards is None else self._guards.due()
 
     def _begun(self, time: Nanoseconds) -> Guards:
-        """The guards; the session begins with the first message."""
+        """The guards; the session begins with the first message that comes on another topic or leaves."""
         if self._guards is None:
             self._guards = Guards([self._guard(some, each, time) for some, each in self._arranged], self._done)
         return self._guards
