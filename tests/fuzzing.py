@@ -21,7 +21,7 @@ from quick_gate import quick_gate
 
 from ltlc.base.limits import Budget, Exceeded, run_all
 from ltlc.cli import TRACEBACK, main
-from ltlc.interfaces.commands.parser import COMMANDS
+from ltlc.interfaces.commands.parser import COMMANDS, module_of
 
 FIXTURES = Path(__file__).parent / "fixtures"
 BROKEN = FIXTURES / "fuzz"
@@ -71,7 +71,9 @@ _NEEDED = (
 @cache
 def _prepare() -> None:
     """Import what commands import when they are called, so that not every child does."""
-    for module in (*(f"ltlc.interfaces.commands.{command}" for command in COMMANDS), *_NEEDED):
+    for command in COMMANDS:
+        module_of(command)
+    for module in _NEEDED:
         importlib.import_module(module)
 
 

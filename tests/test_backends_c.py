@@ -676,7 +676,7 @@ def test_where_temporary_files_cannot_be_written_no_fault_is_reported_but_the_fo
     assert not (tmp_path / "props.c").exists()
 
 
-def _full(_: Files, __: Path, ___: str) -> None:
+def _full(*_: object) -> None:
     raise OSError(ENOSPC, os.strerror(ENOSPC))  # as of what is written to an open file
 
 

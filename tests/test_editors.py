@@ -32,7 +32,7 @@ pytestmark = pytest.mark.skipif(
 
 OPERATORS = ("==", "!=", "<", "<=", ">", ">=", "+", "-", "*", "/", "@", "=")
 SCOPES = {
-    **dict.fromkeys(KEYWORDS | PREFIXES | (HEADS.keys() - {"rate"}) | set(OPERATORS), "keyword."),
+    **dict.fromkeys(KEYWORDS | PREFIXES | (HEADS.keys() - {"rate"}) | {"zone", *OPERATORS}, "keyword."),
     "true": "constant.language.",
     "false": "constant.language.",
     "NUMBER": "constant.numeric.",
