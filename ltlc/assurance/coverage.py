@@ -20,7 +20,7 @@ from ltlc.compiler import Compiled
 from ltlc.dataclass import dataclass
 from ltlc.semantics.diagrams import Diagram, Diagrams, of_predicate, rows
 from ltlc.semantics.ltl import Formula, atoms
-from ltlc.semantics.reset_machine import Clocks, ResetMachine
+from ltlc.semantics.reset_machine import ResetMachine
 
 ROUNDS = 4
 """So many times more runs are drawn for edges that are still missing."""
@@ -31,7 +31,7 @@ Edge = tuple[int, int]
 
 @dataclass(frozen=True, slots=True)
 class Cover:
-    """`runs` that take the edges `taken`, of those that `can_be`; none of them is needed less than another."""
+    """`runs` that take the edges `taken`, of those that `can_be`; each takes one that no other does."""
 
     runs: Sequence[Run[Event]]
     taken: frozenset[Edge]
@@ -92,8 +92,10 @@ def possible(compiled: Compiled) -> frozenset[Edge]:
     after = rows(diagrams, monitor.decisions, lambda atom: diagrams.variable(levels[monitor.atoms[atom]]))
     nowhere = diagrams.terminal(None)
     edges = set[Edge]()
-    places: list[tuple[int, Clocks]] = [(0, time.initial)]
-    for state, clocks in places:
+    todo = [(0, time.initial)]
+    places = {*todo}
+    while todo:
+        state, clocks = todo.pop()
         for move in time.moves(clocks, allowed, narrowed):
             for target in diagrams.values(diagrams.choose(move.letters, after(monitor.edges[state]), nowhere)):
                 if target is None:
@@ -101,7 +103,8 @@ def possible(compiled: Compiled) -> frozenset[Edge]:
                 edges.add((state, target))
                 place = (target, move.target)
                 if not monitor.verdicts[target].is_permanent and place not in places:
-                    places.append(place)
+                    places.add(place)
+                    todo.append(place)
     return frozenset(edges)
 
 

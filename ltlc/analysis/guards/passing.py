@@ -23,7 +23,6 @@ from ltlc.runtime.sampling import Value
 from ltlc.semantics.arenas import Arena, Outcome, Part, Ticks
 from ltlc.semantics.diagrams import Diagram, Diagrams
 from ltlc.semantics.durations import duration_text
-from ltlc.semantics.monitor import Monitor
 from ltlc.semantics.words import Letter
 from ltlc.specification import evaluation
 from ltlc.specification.arenas import Property, arena_of, conditions_held, is_in_game, together
@@ -59,13 +58,11 @@ class Guarded:
         for subject in self.subjects:
             if subject.monitor is None:
                 raise NotDecidedError(f"`{subject.label}` has no monitor")
-            yield Property(subject.specification, subject.formula, self._monitor(subject, subject.monitor))
-
-    @staticmethod
-    def _monitor(subject: Subject, found: Monitor) -> Monitor:
-        """That of the letters that run: z3 may know fewer, over which some atoms say nothing that fallbacks decide."""
-        letters = subject.specification.alphabet
-        return found if subject.alphabet == letters else translate(subject.formula, letters)
+            # z3 may know fewer letters than those that run; over these some atoms say nothing that fallbacks decide.
+            letters = subject.specification.alphabet
+            is_same = subject.alphabet == letters
+            monitor = subject.monitor if is_same else _translated(subject.formula, letters)
+            yield Property(subject.specification, subject.formula, monitor)
 
     @property
     def kept(self) -> tuple[Subject, ...]:
@@ -84,6 +81,10 @@ class Guarded:
             if fewer.kept and holds(fewer):
                 found = fewer
         return found
+
+
+_translated = cache(translate)
+"""For games without one property after the other, the monitors of the others are made once."""
 
 
 def games(study: Study) -> list[Guarded]:

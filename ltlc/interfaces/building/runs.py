@@ -123,6 +123,7 @@ def _files(
     found: dict[Path, str | bytes] = {}
     expected: list[dict[str, Any]] = []
     judge, made_of = Judge(compiled, specification, finds_all=False), provenance([specification.source])
+    store = get_typestore(Stores.EMPTY)
     names = topic_names([each.specification.label for each in compiled])
     for each, name, cover in zip(compiled, names, covers, strict=True):
         expectation, runs = Expectation(each), []
@@ -131,7 +132,7 @@ def _files(
         for number, of in enumerate(cover.runs, 1):
             files: dict[str, str | bytes] = {
                 f"{name}_{number}.csv": table(of),
-                f"{name}_{number}.mcap": bag(of, topics, messages, made_of),
+                f"{name}_{number}.mcap": bag(of, topics, messages, store, made_of),
             }
             verdict, changes = _expected(expectation, of)
             _check(judge, files, each.specification.label, verdict)
@@ -201,9 +202,13 @@ def _cell(value: Value) -> str:
             return str(value)
 
 
-def bag(of: Run[Event], topics: Mapping[str, str], messages: Messages, made_of: Mapping[str, Any]) -> bytes:
-    """MCAP with messages on `topics`, which have types; time that passes without one has messages of its own."""
-    store = get_typestore(Stores.EMPTY)
+def bag(
+    of: Run[Event], topics: Mapping[str, str], messages: Messages, store: Typestore, made_of: Mapping[str, Any]
+) -> bytes:
+    """MCAP with messages on `topics`, which have types; time that passes without one has messages of its own.
+
+    Types are made known to `store`, which knows those of the runs before.
+    """
     for name in (*topics.values(), _EMPTY):
         _define(store, name, messages.types)
     sent: list[tuple[Nanoseconds, str, str, Any]] = []
