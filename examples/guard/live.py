@@ -18,7 +18,7 @@ import signal
 import subprocess
 import sys
 import tempfile
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Set
 from contextlib import contextmanager
 from functools import partial, reduce
 from pathlib import Path
@@ -26,7 +26,7 @@ from time import monotonic, sleep
 from typing import Any
 
 import rclpy
-from crash import HERE, ZERO, drive, violated
+from crash import HERE, ZERO, Unguarded, drive, violated
 from rclpy.signals import SignalHandlerOptions
 from scenes import SCENES
 from world import Message
@@ -41,15 +41,16 @@ SETTLING = 1.5
 class Topics:
     """The way of commands over topics; messages arrive as time goes by.
 
-    The guard's node is called `guard`, and is the `process`. Raises TimeoutError if it does not come up.
+    The guard's node is called `guard`, is the `process`, and reads what comes on `topics`. Raises TimeoutError if it
+    does not come up.
     """
 
-    def __init__(self, guard: str, process: subprocess.Popen[bytes]) -> None:
+    def __init__(self, guard: str, process: subprocess.Popen[bytes], topics: Set[str]) -> None:
         self._process = process
         self.heard: list[tuple[int, Message]] = []
         self._node = rclpy.create_node("simulation")
         self._arrived: list[Message] = []
-        read = self._read_by(guard)
+        read = self._read_by(guard, topics)
         self._publishers = {
             topic: self._node.create_publisher(message_class(types[0]), topic, 10) for topic, types in read.items()
         }
@@ -65,15 +66,18 @@ class Topics:
     def _outs(self) -> list[str]:
         return [topic.removesuffix("_raw") for topic in self._publishers if topic.endswith("_raw")]
 
-    def _read_by(self, guard: str) -> dict[str, list[str]]:
-        """The topics that the guard's node reads, with their types."""
+    def _read_by(self, guard: str, topics: Set[str]) -> dict[str, list[str]]:
+        """The topics that the guard's node reads, with their types, once it reads all of `topics`.
+
+        A node's subscriptions become known one after another.
+        """
 
         def found() -> dict[str, list[str]]:
             if (guard, "/") not in self._node.get_node_names_and_namespaces():
                 return {}
             return dict(self._node.get_subscriber_names_and_types_by_node(guard, "/"))
 
-        self._wait(lambda: any(topic.endswith("_raw") for topic in found()), f"{guard} starts")
+        self._wait(lambda: topics <= found().keys(), f"{guard} starts")
         return found()
 
     def _wait(self, happens: Callable[[], object], what: str) -> None:
@@ -109,6 +113,13 @@ class Topics:
     def _receive(self, topic: str, message: Any) -> None:
         values = {path: reduce(getattr, path.split("/"), message) for path in ZERO[topic]}
         self._arrived.append((topic, values))
+
+
+def published(name: str) -> set[str]:
+    """The topics on which the sensors and the controller of a scene publish."""
+    way = Unguarded()
+    drive(SCENES[name](), way)
+    return {f"{topic}_raw" if topic in ZERO else topic for _, (topic, _) in way.heard}
 
 
 def message_class(name: str) -> Any:
@@ -153,7 +164,7 @@ def main() -> int:
         rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
         try:
             scene = SCENES[name]()
-            world = drive(scene, Topics(f"{name}_monitor", node))
+            world = drive(scene, Topics(f"{name}_monitor", node, published(name)))
         except TimeoutError as error:
             print(f"simulation: {error}", file=sys.stderr)
             return 2
