@@ -7,7 +7,7 @@ import os
 import signal
 import sys
 from collections import defaultdict
-from collections.abc import Hashable, Iterator, Sequence
+from collections.abc import Generator, Hashable, Iterator, Sequence
 from pathlib import Path
 
 import pytest
@@ -64,6 +64,11 @@ LONGEST = (
 )
 """The files that take longest, or wait longest, first: so that at the end no worker waits for another."""
 
+LIVE = ("live", "ros")
+"""The markers of tests that meet other processes in real time: one that fails runs once more, and that is reported."""
+
+HAS_FAILED = pytest.StashKey[bool]()
+
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     """How much random tests draw."""
@@ -91,6 +96,24 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     items.sort(key=lambda item: places.get(item.path.name, len(LONGEST)))
     for function in {item.function for item in items if isinstance(item, pytest.Function)}:
         limit_examples(function)
+    for item in items:
+        if any(item.get_closest_marker(name) for name in LIVE):
+            item.add_marker(pytest.mark.flaky(reruns=1))
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport(item: pytest.Item) -> Generator[None, pytest.TestReport, pytest.TestReport]:
+    """Note which tests fail."""
+    report = yield
+    item.stash[HAS_FAILED] = report.failed
+    return report
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_teardown(item: pytest.Item) -> None:
+    """End what a test that failed shares with others: its second run is to meet new processes."""
+    if item.stash[HAS_FAILED] and item.get_closest_marker("flaky"):
+        item.session._setupstate.teardown_exact(None)
 
 
 def pytest_collection_finish() -> None:

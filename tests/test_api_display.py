@@ -12,6 +12,8 @@ import pytest
 import ltlc
 from ltlc.interfaces.api.results import Run
 
+pytestmark = pytest.mark.live
+
 HOSTILE = (
     "<script>parent.document.title = document.title = 'taken'</script><img src=x onerror=\"document.title='taken'\">"
 )

@@ -129,6 +129,7 @@ class Quiet(http.server.SimpleHTTPRequestHandler):
         """Say nothing."""
 
 
+@pytest.mark.live
 def test_recordings_are_read_over_http(tmp_path: Path) -> None:
     pytest.importorskip("aiohttp", reason="fsspec reads http through aiohttp, which is yours to install")
     (tmp_path / "b.csv").write_text(FAST)
@@ -191,7 +192,7 @@ if __name__ == "__main__":
 """
 
 
-@pytest.mark.slow
+@pytest.mark.live
 def test_workers_of_an_engine_give_the_same_and_one_that_dies_costs_retries(tmp_path: Path) -> None:
     pytest.importorskip("distributed", reason="needs Dask (pip install '.[campaigns]')")
     (tmp_path / "props.txt").write_text(SPECIFICATION)

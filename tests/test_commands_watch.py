@@ -62,6 +62,7 @@ def interrupted(process: subprocess.Popen[str]) -> int:
     return process.wait()
 
 
+@pytest.mark.live
 def test_check_runs_again_when_the_specification_changes(start: Start, tmp_path: Path) -> None:
     path = tmp_path / "props.txt"
     path.write_text("slow: never w > 2\n")
@@ -72,6 +73,7 @@ def test_check_runs_again_when_the_specification_changes(start: Start, tmp_path:
     assert interrupted(process) == 0
 
 
+@pytest.mark.live
 def test_run_runs_again_when_a_recording_comes_and_ends_with_its_last_code(start: Start, tmp_path: Path) -> None:
     """What it writes among the recordings is no change."""
     (tmp_path / "props.txt").write_text(PROPERTY.format(2))

@@ -18,6 +18,8 @@ from processes import children_of
 
 from ltlc.cli import main
 
+pytestmark = pytest.mark.live
+
 TEXT = """decl speed /speed Float64.data
 # 𝒳 wide
 fast: never speed > 2

@@ -195,12 +195,14 @@ def seen(installed: Path) -> list[dict[str, Any]]:
     return started(installed, specification, "diagnostics", "opened", path=Path(sys.executable).with_name("ltlc"))
 
 
+@pytest.mark.live
 def test_the_installed_extension_shows_what_the_server_finds(seen: list[dict[str, Any]]) -> None:
     assert {code for each in seen for code, _ in each.get("diagnostics", ())} == {"LTL104"}
     assert [each["message"] for each in seen if "message" in each] == []
     assert seen[-1] == {"deactivated": True}
 
 
+@pytest.mark.live
 def test_a_click_on_the_lens_of_a_property_opens_its_automaton_in_the_browser(seen: list[dict[str, Any]]) -> None:
     (page,) = (each["opened"] for each in seen if "opened" in each)
     assert page.startswith("file://")

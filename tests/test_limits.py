@@ -31,6 +31,8 @@ from ltlc.semantics.alphabet import Alphabet, Group
 from ltlc.semantics.ltl import And, Atom, Formula, Next, Not, Or, Until, atoms, eventually, globally, implies
 from ltlc.semantics.timed_atoms import BEGINNING, late
 
+pytestmark = pytest.mark.live
+
 A, B = Atom("a"), Atom("b")
 AMPLE = Budget(60)
 BRIEF = Budget(0.5, 500)

@@ -12,7 +12,7 @@ import pytest
 
 from ltlc.cli import main
 
-pytestmark = pytest.mark.skipif(bool(chromium.MISSING), reason=chromium.MISSING)
+pytestmark = [pytest.mark.live, pytest.mark.skipif(bool(chromium.MISSING), reason=chromium.MISSING)]
 
 HOSTILE = "<script>document.title = 'taken'</script><img src=x onerror=\"document.title = 'taken'\">"
 

@@ -34,6 +34,8 @@ from ltlc.interfaces.serve.questions import MOST_STEPS
 from ltlc.interfaces.serve.server import MOST_BYTES, MOST_OF_A_FILE, Server
 from ltlc.interfaces.serve.start import Start
 
+pytestmark = pytest.mark.live
+
 TEXT = """decl v /v Float64.data
 decl near /near Bool.data
 slow: never v > 2

@@ -17,7 +17,7 @@ from ltlc.frontend.syntax.lexer import FUNCTIONS, KEYWORDS, QUANTIFIERS
 from ltlc.interfaces.serve.server import Server
 from ltlc.interfaces.serve.start import Start
 
-pytestmark = pytest.mark.skipif(bool(chromium.MISSING), reason=chromium.MISSING)
+pytestmark = [pytest.mark.live, pytest.mark.skipif(bool(chromium.MISSING), reason=chromium.MISSING)]
 
 TAKEN = "document.title = 'taken'"
 HOSTILE = f'</textarea></svg><script>{TAKEN}</script><img src=x onerror="{TAKEN}">{{{{ 7*7 }}}}'

@@ -131,6 +131,7 @@ def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[chromium.Brows
         yield opened
 
 
+@pytest.mark.live
 @in_a_browser
 @pytest.mark.parametrize("width", [400, 1280])
 @pytest.mark.parametrize("name", LOOKED_AT)
@@ -142,6 +143,7 @@ def test_a_page_fits_the_window_and_nothing_fails(
     assert [each for each in browser.complaints() if "favicon.ico" not in each] == []
 
 
+@pytest.mark.live
 @in_a_browser
 def test_the_search_finds_pages(browser: chromium.Browser, address: str) -> None:
     browser.visit(f"{address}/index.html?q=patrolling")
@@ -149,6 +151,7 @@ def test_the_search_finds_pages(browser: chromium.Browser, address: str) -> None
     assert browser.complaints() == []
 
 
+@pytest.mark.live
 @in_a_browser
 def test_the_site_and_its_pictures_are_dark_for_those_who_want_it_dark(browser: chromium.Browser, address: str) -> None:
     browser.visit(f"{address}/tutorial.html", scheme="dark")
