@@ -20,7 +20,6 @@ FREE = Alphabet(LETTERS)
 MEANING = {letter: Atom(letter) for letter in LETTERS}
 
 
-@pytest.mark.slow
 def test_the_section_is_what_the_command_writes() -> None:
     found = rows()
     _, heading, section = PAGE.read_text(encoding="utf-8").partition(f"## {TITLE}\n")

@@ -43,7 +43,6 @@ def run(source: str, names: dict[str, Any]) -> tuple[str, Any]:
     return output.getvalue(), value
 
 
-@pytest.mark.slow
 def test_the_notebook_says_what_it_said_when_it_was_written() -> None:
     names: dict[str, Any] = {}
     forms = set()
@@ -56,7 +55,6 @@ def test_the_notebook_says_what_it_said_when_it_was_written() -> None:
     assert forms == set(SHOWN_AS.values())
 
 
-@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore")  # those of Jupyter
 def test_the_notebook_runs_in_jupyter(tmp_path: Path) -> None:
     pytest.importorskip("ipykernel")

@@ -60,7 +60,6 @@ def test_a_package_says_the_commit_that_it_was_built_from(repository: Path, monk
     assert version_text() == f"{__version__} (0123456789ab)"
 
 
-@pytest.mark.slow
 def test_a_wheel_made_of_an_sdist_has_the_commit_and_the_data(tmp_path: Path) -> None:
     """`scripts/release` installs both, and tries them."""
     commit = commit_of(PROJECT)
