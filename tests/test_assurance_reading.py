@@ -6,8 +6,9 @@ import random
 import re
 import subprocess
 import sys
+from collections.abc import Callable
 from itertools import islice
-from typing import Any
+from typing import Any, TypeVar
 
 import pytest
 from hypothesis import given, settings
@@ -30,6 +31,8 @@ from ltlc.backends.python import standalone_classes
 from ltlc.compiler import Compiled
 from ltlc.inputs.messages.definitions import MessageTypes, shipped
 from ltlc.specification.expressions import Signal
+
+Found = TypeVar("Found")
 
 D, V, B = "decl d /d Float32.data\n", "decl v /v Float64.data\n", "decl b /b Bool.data\n"
 TEXTS = {
@@ -559,6 +562,10 @@ def test_what_a_node_gives_its_monitors_is_read_back(right: str, wrong: str, sai
     assert any(said in str(each) for each in found)
 
 
+def parsed(found: Found) -> Callable[[], Found]:
+    return lambda: found
+
+
 def test_the_gate_refuses_what_is_not_read_back() -> None:
     [compiled], whole = from_text(STOP)
     emitted = emit("python", [compiled], whole)
@@ -569,10 +576,10 @@ def test_the_gate_refuses_what_is_not_read_back() -> None:
     for text, passes in ((emitted, True), (wrong, False)):
         (part,) = written(text, [compiled.machine], [compiled.specification])
         assert isinstance(part, Written)
-        judgement = judge(Subject(compiled, found[0], part), messages)
+        judgement = judge(Subject(compiled, found[0], parsed(part)), messages)
         assert judgement.passed is passes
         assert isinstance(judgement.reading, ReadBack) is passes
-        (same,) = judge_all([compiled], found, messages, Budget(seconds=60.0), written=[part])
+        (same,) = judge_all([compiled], found, messages, Budget(seconds=60.0), written=parsed([part]))
         assert same == judgement
 
 

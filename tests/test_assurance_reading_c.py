@@ -297,7 +297,7 @@ def test_without_a_compiler_c_is_read_back_each_property_by_itself() -> None:
     files = emit(compiled, whole, "props")
     wrong = with_source(files, files.source.replace("state == 0 && w > 1.0", "state == 0 && w > 2.0"))
     parts = written(wrong.header, wrong.source, compiled)
-    found = judge_all(compiled, None, Messages(MessageTypes(shipped())), Budget(), written=parts)
+    found = judge_all(compiled, None, Messages(MessageTypes(shipped())), Budget(), written=lambda: parts)
     assert [getattr(each, "passed", None) for each in found] == [True, False]
 
 

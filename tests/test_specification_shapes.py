@@ -180,7 +180,7 @@ def test_only_one_of_a_shape_is_judged_and_its_certificate_is_that_of_each(monke
 
     monkeypatch.setattr(gate, "run_all", counted)
     judged = gate.judge_all(compiled, None, Messages(MessageTypes(shipped())), BUDGET)
-    assert sum(jobs) == 2, "the monitor and the code of one property"
+    assert sum(jobs) == 3, "the monitor of one property, its code as it runs and as it is written"
     for each, judgement in zip(compiled, judged, strict=True):
         assert isinstance(judgement, gate.Judgement)
         assert isinstance(judgement.certificate, Certificate)

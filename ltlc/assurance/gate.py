@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
+from itertools import islice
 from typing import Any
 
 from ltlc.assurance.certify import NotCertified
@@ -59,11 +60,11 @@ class Judgement:
 
 @dataclass(frozen=True)
 class Subject:
-    """A property to be judged: its monitor and, where there is any, its code as it runs and as it is written."""
+    """A property to be judged: its monitor and, where there is any, its code as it runs and what is `written` in it."""
 
     compiled: Compiled
     program: Program | None
-    written: Written | Difference | None
+    written: Callable[[], Written | Difference] | None
 
 
 def judge_all(
@@ -72,16 +73,19 @@ def judge_all(
     messages: Messages,
     budget: Budget,
     watch: Watch | None = None,
-    written: Sequence[Written | Difference] | None = None,
+    written: Callable[[], Sequence[Written | Difference]] | None = None,
 ) -> list[Judgement | Exceeded]:
     """The judgement of each property, in order, or the limit of `budget` that judging it ran into.
 
-    `programs` are the emitted code of each property, `written` its text, None where there is none; `messages` those of
-    the specification. Properties are judged in child processes, as many at a time as there are CPUs; of those of one
-    shape (see `shapes`) only one, unless that fails.
+    `programs` are the emitted code of each property, None where there is none; `written` parses the output, and gives
+    what it says of each. `messages` are those of the specification. Properties are judged in child processes, as many
+    at a time as there are CPUs; of those of one shape (see `shapes`) only one, unless that fails.
     """
+    parts = [written and partial(_part, written, number) for number in range(len(compiled))]
     none = [None] * len(compiled)
-    subjects = list(map(Subject, compiled, programs or none, written or none))
+    subjects = list(map(Subject, compiled, programs or none, parts))
+    if len(subjects) == 1:
+        return [*_judge_each({0: subjects[0]}, messages, budget, watch).values()]
     shapes = [_shape(subject, number) for number, subject in enumerate(subjects)]
     first = {shape.key: number for number, shape in reversed([*enumerate(shapes)])}
     judged = _judge_each({n: subjects[n] for n in sorted(first.values())}, messages, budget, watch)
@@ -95,6 +99,10 @@ def judge_all(
     left = {n: subject for n, subject in enumerate(subjects) if n not in judged}
     judged |= _judge_each(left, messages, budget, watch)
     return [judged[number] for number in range(len(compiled))]
+
+
+def _part(written: Callable[[], Sequence[Written | Difference]], number: int) -> Written | Difference:
+    return written()[number]
 
 
 def _shape(subject: Subject, number: int) -> Shape:
@@ -126,27 +134,29 @@ def _judge_each(
     budget: Budget,
     watch: Watch | None,
 ) -> dict[int, Judgement | Exceeded]:
-    """The judgement of each of `subjects`, by its number: its monitor and its code as jobs of their own."""
-    jobs = [partial(half, subject, messages) for subject in subjects.values() for half in (_of_monitor, _of_code)]
-    halves = iter(run_all(jobs, budget, watch=watch and partial(_halved, watch), patience=0))
-    return {number: _joined(next(halves), next(halves)) for number in subjects}
+    """The judgement of each of `subjects`, by its number: each of the `_JUDGES` as a job of its own."""
+    jobs = [partial(each, subject, messages) for subject in subjects.values() for each in _JUDGES]
+    found = iter(run_all(jobs, budget, watch=watch and partial(_of_properties, watch), patience=0))
+    return {number: _joined([*islice(found, len(_JUDGES))]) for number in subjects}
 
 
-def _halved(watch: Watch, done: int, jobs: int) -> None:
+def _of_properties(watch: Watch, done: int, jobs: int) -> None:
     """Count properties rather than jobs."""
-    watch(done // 2, jobs // 2)
+    watch(done // len(_JUDGES), jobs // len(_JUDGES))
 
 
-def _joined(of_monitor: Any, of_code: Any) -> Judgement | Exceeded:
-    for half in (of_monitor, of_code):
-        if isinstance(half, Exceeded):
-            return half
-    return Judgement(**of_monitor, **of_code)
+def _joined(found: Sequence[dict[str, Any] | Exceeded]) -> Judgement | Exceeded:
+    parts: dict[str, Any] = {}
+    for each in found:
+        if isinstance(each, Exceeded):
+            return each
+        parts |= each
+    return Judgement(**parts)
 
 
 def judge(subject: Subject, messages: Messages) -> Judgement:
     """The judgement of one property, in this process."""
-    return Judgement(**_of_monitor(subject, messages), **_of_code(subject, messages))
+    return Judgement(**{name: found for each in _JUDGES for name, found in each(subject, messages).items()})
 
 
 def _of_monitor(subject: Subject, messages: Messages) -> dict[str, Any]:
@@ -160,12 +170,19 @@ def _of_monitor(subject: Subject, messages: Messages) -> dict[str, Any]:
     }
 
 
-def _of_code(subject: Subject, messages: Messages) -> dict[str, Any]:
-    """What is judged of its code, run and read."""
-    compiled, program, written = subject.compiled, subject.program, subject.written
-    replayed = program and replay(compiled, program.start, program.runs(compiled, _samples(compiled, messages)))
-    read_back = written if written is None or isinstance(written, Difference) else written.read_back()
-    return {"replay": replayed, "reading": read_back}
+def _of_program(subject: Subject, messages: Messages) -> dict[str, Any]:
+    """What is judged of its code as it runs."""
+    compiled, program = subject.compiled, subject.program
+    return {"replay": program and replay(compiled, program.start, program.runs(compiled, _samples(compiled, messages)))}
+
+
+def _of_text(subject: Subject, _: Messages) -> dict[str, Any]:
+    """What is judged of its code as it is written."""
+    written = subject.written and subject.written()
+    return {"reading": written if written is None or isinstance(written, Difference) else written.read_back()}
+
+
+_JUDGES = (_of_monitor, _of_program, _of_text)
 
 
 def _samples(compiled: Compiled, messages: Messages) -> Samples:

@@ -57,9 +57,7 @@ def programs(
                 for w, c in zip(classes, compiled, strict=True)
             ]
         case "ros2":
-            node = Emitted(load(text, "emitted"))
-            for topic in node.topics.values():
-                messages.is_installed(topic.message)
+            node = Emitted(text)
             settings = Settings(specification.rate, specification.timeout)
             return [Monitored(node, number, settings, messages) for number in range(len(compiled))]
         case _:
@@ -119,17 +117,47 @@ class Standalone:
 
 
 class Emitted:
-    """What an emitted node defines, with its signals by name, by topic and by place, and its topics by name."""
+    """What an emitted node defines, with its signals by name, by topic and by place, and its topics by name.
 
-    def __init__(self, names: Mapping[str, Any]) -> None:
-        self.names, self.plan = names, names["plan"]()
-        self.topics = {topic.name: topic for topic in names["topics_to_read"]()}
-        self.by_name = {signal.name: signal for signal in self.plan.signals}
-        self.places = {name: place for place, name in enumerate(self.by_name)}
-        self.on_topic: dict[str, list[str]] = {}
+    Its text is compiled where it is needed first, which takes time: one property is judged in a child.
+    """
+
+    def __init__(self, text: str) -> None:
+        self._text = text
+
+    @cached_property
+    def names(self) -> Mapping[str, Any]:
+        """What its text defines."""
+        return load(self._text, "emitted")
+
+    @cached_property
+    def plan(self) -> Any:
+        """Its signals and properties."""
+        return self.names["plan"]()
+
+    @cached_property
+    def topics(self) -> Mapping[str, Any]:
+        """The topics it reads, by name."""
+        return {topic.name: topic for topic in self.names["topics_to_read"]()}
+
+    @cached_property
+    def by_name(self) -> Mapping[str, Any]:
+        """The signals of its plan."""
+        return {signal.name: signal for signal in self.plan.signals}
+
+    @cached_property
+    def places(self) -> Mapping[str, int]:
+        """The numbers of its signals."""
+        return {name: place for place, name in enumerate(self.by_name)}
+
+    @cached_property
+    def on_topic(self) -> Mapping[str, list[str]]:
+        """The names of the signals that are read from each topic."""
+        found: dict[str, list[str]] = {}
         for name, signal in self.by_name.items():
             if hasattr(signal, "topic"):
-                self.on_topic.setdefault(signal.topic, []).append(name)
+                found.setdefault(signal.topic, []).append(name)
+        return found
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ language are next-free, these instants stand for all (`docs/language.md`, Who no
 from __future__ import annotations
 
 from bisect import bisect_left
-from collections.abc import Callable, Container, Iterable, Iterator
+from collections.abc import Callable, Container, Iterable, Iterator, Sequence
 from dataclasses import replace
 
 from ltlc.dataclass import dataclass
@@ -19,6 +19,8 @@ from ltlc.semantics.ltl import Formula
 from ltlc.semantics.timed_atoms import Age, News, Occurred, Previously, messages_of
 from ltlc.semantics.trackers import ALWAYS, Phase, Scope, Tracker, scopes_around
 from ltlc.semantics.words import Letter
+
+Dues = Sequence[tuple[int | None, Nanoseconds]]
 
 Retake = Callable[[Instant, Callable[[Letter], Instant]], Instant]
 """The clock step that is right, given the one with the letter held, and what it would be with another letter."""
@@ -89,6 +91,7 @@ class TimedRun:
         self._around = scopes_around(trackers)
         self.states = [tracker.initial for tracker in trackers]
         self._started = [session if isinstance(tracker.subject, Age) else None for tracker in trackers]
+        self._dues: Dues | None = None
 
     def hear(self, time: Nanoseconds, news: Container[str]) -> Iterator[Instant]:
         """Messages come that make no step: ages count from them.
@@ -102,6 +105,7 @@ class TimedRun:
             yield self._clock_step(time, (self.letter - self._news).union(heard.values()))
         for k in heard:
             self._started[k] = time
+        self._dues = None
 
     def step(self, time: Nanoseconds, letter: Letter) -> Iterator[Instant]:
         """The clock steps up to and including `time`, then the step itself."""
@@ -117,8 +121,13 @@ class TimedRun:
         """When the letter changes by itself next."""
         return min([moment for _, moment in self.dues()], default=None)
 
-    def dues(self) -> list[tuple[int | None, Nanoseconds]]:
+    def dues(self) -> Dues:
         """What changes the letter by itself, and when: a tracker, by number; None: a count, or that news is over."""
+        if self._dues is None:  # it is asked several times of each instant
+            self._dues = self._found_dues()
+        return self._dues
+
+    def _found_dues(self) -> Dues:
         found: list[tuple[int | None, Nanoseconds]] = []
         if self.time is None:
             return found
@@ -142,6 +151,7 @@ class TimedRun:
         vars(other).update(vars(self))  # a tenth of the time of `copy.copy`
         other.trackers, other.states, other._started = trackers or self.trackers, [*self.states], [*self._started]
         other._retake = retake or self._retake
+        other._dues = self._dues if trackers is None else None
         return other
 
     def counts_from(self, k: int, bound: int) -> Nanoseconds | None:
@@ -184,7 +194,7 @@ class TimedRun:
                 self._started[k] = time
             self.states[k] = case.state
             scopes.append(case.scope)
-        self.letter, self.time = letter, time
+        self.letter, self.time, self._dues = letter, time, None
         return Instant(time, letter, by_time=held < time)
 
 

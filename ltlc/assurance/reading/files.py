@@ -23,9 +23,6 @@ from ltlc.program.guards import GuardProgram
 from ltlc.program.machine import Excused, Machine
 from ltlc.specification.specification import PropertySpecification
 
-READABLE = ("python", "ros2")
-"""The targets whose text in Python is read back."""
-
 
 @dataclass(frozen=True)
 class Written:

@@ -7,8 +7,9 @@ import importlib.util
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from functools import cache
+from importlib.machinery import SourceFileLoader
 from pathlib import Path
-from symtable import SymbolTable, symtable
+from types import CodeType
 
 from ltlc.backends.trees import INDENT, LINE_LENGTH
 from ltlc.dataclass import dataclass
@@ -47,7 +48,7 @@ FOR_TYPES = Import("typing", "TYPE_CHECKING")
 
 @dataclass(frozen=True, slots=True)
 class Module:
-    """A module: its part of a file, what it imports and the names that it uses."""
+    """A module: its part of a file, what it imports and the names that it uses, those of attributes included."""
 
     part: Inlined
     imports: frozenset[Import]
@@ -86,24 +87,28 @@ def inline(modules: Sequence[str], further: Iterable[Import] = ()) -> Program:
 @cache
 def _module(module: str) -> Module:
     text = module_text(module)
+    code = SourceFileLoader(module, _origin(module)).get_code(module)  # Python's cache: to parse it takes longer
+    assert code is not None
     body = _HEADER.sub("", text, count=1)
     header = ast.parse(text.removesuffix(body))
     title = (ast.get_docstring(header) or "").split("\n\n")[0]
-    return Module(
-        Inlined(" ".join(title.split()), body.strip("\n")),
-        frozenset(i for node in header.body for i in _imports(node)),
-        frozenset(_names(symtable(text, module, "exec"))),
-    )
+    imports = frozenset(i for node in header.body for i in _imports(node))
+    names = frozenset([*_names(code), *(i.bound for i in imports)])
+    return Module(Inlined(" ".join(title.split()), body.strip("\n")), imports, names)
 
 
 def module_text(module: str) -> str:
     """The source of a module, which is not imported: there may be no ROS here. Dataclasses are those of Python."""
+    text = Path(_origin(module)).read_text(encoding="utf-8")
+    return text.replace("from ltlc.dataclass import", "from dataclasses import")
+
+
+def _origin(module: str) -> str:
+    """The path of the source of a module."""
     spec = importlib.util.find_spec(module)
     if spec is None or spec.origin is None:
         raise ModuleNotFoundError(module)
-    return (
-        Path(spec.origin).read_text(encoding="utf-8").replace("from ltlc.dataclass import", "from dataclasses import")
-    )
+    return spec.origin
 
 
 def _imports(node: ast.stmt) -> list[Import]:
@@ -141,8 +146,9 @@ def _import_order(name: str) -> tuple[bool, bool, str]:
     return (not name.isupper(), not name[0].isupper(), name.lower())
 
 
-def _names(table: SymbolTable) -> Iterator[str]:
-    """The names in the text of `table`, those of attributes excepted."""
-    yield from table.get_identifiers()
-    for inner in table.get_children():
-        yield from _names(inner)
+def _names(code: CodeType) -> Iterator[str]:
+    """The names in `code` that are not local, and those of its parts."""
+    yield from code.co_names
+    for inner in code.co_consts:
+        if isinstance(inner, CodeType):
+            yield from _names(inner)

@@ -4,19 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from functools import cached_property, partial
+from functools import cache, cached_property, partial
 from pathlib import Path
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 from ltlc import backends
 from ltlc.assurance.messages import Messages
 from ltlc.assurance.programs import Monitored, Program, programs
-from ltlc.assurance.reading.files import READABLE, written
 from ltlc.assurance.reading.outcomes import Difference, Written
 from ltlc.assurance.told_runs import told_runs
-from ltlc.backends import ament, c
-from ltlc.backends.ament.folder import earlier
-from ltlc.backends.ament.metadata import Metadata
 from ltlc.backends.spelling import NotInTargetError
 from ltlc.base.codes import diagnostic
 from ltlc.base.diagnostics import Diagnostic
@@ -26,6 +22,10 @@ from ltlc.dataclass import dataclass
 from ltlc.program.guards import GuardProgram
 from ltlc.specification.specification import Specification
 
+if TYPE_CHECKING:
+    from ltlc.backends import c
+    from ltlc.backends.ament.metadata import Metadata
+
 _NODE = "ROS 2"
 
 
@@ -33,12 +33,13 @@ _NODE = "ROS 2"
 class Made:
     """The code of each property, as what can be run and as text, None where there is none; and what comes of it.
 
-    `files` makes the files, by their paths, once the code has been judged; `note` is to be said with them. Those
-    `beside` are of a guard, of which `flaw` finds what its code does otherwise than it should.
+    `written` parses the text, which takes time, once for each process that asks. `files` makes the files, by their
+    paths, once the code has been judged; `note` is to be said with them. Those `beside` are of a guard, of which `flaw`
+    finds what its code does otherwise than it should.
     """
 
     programs: Sequence[Program] | None
-    written: Sequence[Written | Difference] | None
+    written: Callable[[], Sequence[Written | Difference]] | None
     files: Callable[[], Mapping[Path, str | bytes]]
     note: str = ""
     beside: Sequence[Path] = ()
@@ -127,12 +128,15 @@ class _Text:
             raise UnfitError(
                 _unfit(_NODE if self.name == "ros2" else self.name.capitalize(), emit, specification, compiled)
             ) from None
-        read = (
-            written(text, [each.machine for each in compiled], [each.specification for each in compiled], guards)
-            if self.name in READABLE
-            else None
-        )
-        return Made(programs(self.name, text, compiled, specification, messages), read, lambda: {self.path: text})
+        code = programs(self.name, text, compiled, specification, messages)
+        read = None if code is None else cache(partial(_written, text, compiled, guards))
+        return Made(code, read, lambda: {self.path: text})
+
+
+def _written(text: str, compiled: Sequence[Compiled], guards: Sequence[GuardProgram]) -> Sequence[Written | Difference]:
+    from ltlc.assurance.reading.files import written  # takes time, and is asked for in a child
+
+    return written(text, [each.machine for each in compiled], [each.specification for each in compiled], guards)
 
 
 @dataclass(frozen=True)
@@ -161,6 +165,7 @@ class _C:
     ) -> Made:
         from ltlc.assurance.c_programs import c_programs  # takes time, as what reads C does
         from ltlc.assurance.reading.c.files import written as written_in_c
+        from ltlc.backends import c
 
         try:
             files = c.emit(compiled, specification, self.path.stem)
@@ -169,7 +174,9 @@ class _C:
         texts = dict(zip(self.told, (files.source, files.header, files.wrapper), strict=True))
         made = Made(
             c_programs(files, compiled, specification, messages),
-            written_in_c(files.header, files.source, compiled, specification.rate, specification.timeout),
+            cache(
+                partial(written_in_c, files.header, files.source, compiled, specification.rate, specification.timeout)
+            ),
             lambda: texts,
             f"worst case: {files.bound}",
         )
@@ -235,7 +242,7 @@ class _Rust:
         except NotInTargetError:
             raise UnfitError(_unfit("Rust", rust.emit, specification, compiled)) from None
         own = (specification.rate, specification.timeout)
-        read = written_in_rust(file.text, file.c.header, file.c.source, compiled, *own)
+        read = cache(partial(written_in_rust, file.text, file.c.header, file.c.source, compiled, *own))
         return Made(rust_programs(file, compiled, specification, messages), read, lambda: {self.path: file.text})
 
 
@@ -277,6 +284,8 @@ class _Package:
     @cached_property
     def metadata(self) -> Metadata:
         """The manifest of the package that is there. Raises OSError if something else is."""
+        from ltlc.backends.ament.folder import earlier  # takes time, as what reads XML does
+
         return earlier(self.path)
 
     def refuse(self) -> None:
@@ -289,6 +298,8 @@ class _Package:
         messages: Messages,
         guards: Sequence[GuardProgram] = (),
     ) -> Made:
+        from ltlc.backends import ament
+
         node = _Text("ros2", self.path).make(compiled, specification, messages, guards)
 
         def files() -> Mapping[Path, str]:
