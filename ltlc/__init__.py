@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from ltlc.interfaces.api.check import Check, check
     from ltlc.interfaces.api.compare import compare
     from ltlc.interfaces.api.corpus import measure_corpus
+    from ltlc.interfaces.api.falsify import Falsified, falsify
     from ltlc.interfaces.api.guard import LiveGuard, guard
     from ltlc.interfaces.api.monitor import LiveRun, monitor
     from ltlc.interfaces.api.results import Run
@@ -23,6 +24,7 @@ __all__ = [
     "Budget",
     "Build",
     "Check",
+    "Falsified",
     "LiveGuard",
     "LiveRun",
     "Run",
@@ -31,6 +33,7 @@ __all__ = [
     "build",
     "check",
     "compare",
+    "falsify",
     "guard",
     "measure_corpus",
     "monitor",
@@ -42,6 +45,7 @@ _MODULES = {
     "Budget": "ltlc.base.limits",
     "Build": "ltlc.interfaces.api.build",
     "Check": "ltlc.interfaces.api.check",
+    "Falsified": "ltlc.interfaces.api.falsify",
     "LiveGuard": "ltlc.interfaces.api.guard",
     "LiveRun": "ltlc.interfaces.api.monitor",
     "Run": "ltlc.interfaces.api.results",
@@ -50,6 +54,7 @@ _MODULES = {
     "build": "ltlc.interfaces.api.build",
     "check": "ltlc.interfaces.api.check",
     "compare": "ltlc.interfaces.api.compare",
+    "falsify": "ltlc.interfaces.api.falsify",
     "guard": "ltlc.interfaces.api.guard",
     "measure_corpus": "ltlc.interfaces.api.corpus",
     "monitor": "ltlc.interfaces.api.monitor",

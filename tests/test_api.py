@@ -32,7 +32,7 @@ SCAN = "decl scan /scan LaserScan.ranges\nfree: min(scan) > 0.3"
 NORM = "slow: never robot.velocity > 2"
 
 
-@pytest.mark.parametrize("module", ["build", "check", "guard", "monitor", "run"])
+@pytest.mark.parametrize("module", ["build", "check", "falsify", "guard", "monitor", "run"])
 def test_the_examples_of_the_documentation_are_so(module: str) -> None:
     found = doctest.testmod(import_module(f"ltlc.interfaces.api.{module}"))
     assert found.failed == 0

@@ -48,6 +48,7 @@ ORDER = {
     ],
     "analysis": ["analysis", "analysis.comparison"],
     "importing": ["importing"],
+    "falsification": ["falsification"],
     "interfaces": [
         "interfaces",
         *(

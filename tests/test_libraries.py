@@ -127,6 +127,12 @@ def test_every_command_names_what_it_lacks(core: Core, tmp_path: Path, arguments
     assert "bug" not in done.stderr
 
 
+def test_a_search_names_what_it_lacks(core: Core) -> None:
+    command = ("falsify", "props.txt", "--simulate", "true {v} {recording}", "--parameter", "v=0..1")
+    done = core(*command)
+    assert (done.returncode, "pip install 'ltlc[falsify]'" in done.stderr) == (2, True), done.stderr
+
+
 def test_the_extras_of_the_package_bring_the_modules_that_are_named() -> None:
     extras = tomllib.loads((PROJECT / "pyproject.toml").read_text())["project"]["optional-dependencies"]
     for name, modules in EXTRAS.items():

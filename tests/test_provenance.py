@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import shlex
 from collections.abc import Callable
 from hashlib import sha256
 from pathlib import Path
@@ -134,6 +135,8 @@ OUTPUTS = {
     "build hoa": "build props.txt --target hoa -o out",
     "build tests": "build props.txt --target tests -o out",
     "mine json": "mine props.txt a.csv --format json",
+    "falsify json": "falsify props.txt --simulate \"sh -c 'cp a.csv {recording}.csv' {v}\" --parameter v=0..1"
+    " --simulations 1 --format json",
     "compare json": "compare props.txt --format json",
     "matrix json": "matrix props.txt --format json",
     "matrix reqif": "matrix props.txt --format reqif",
@@ -147,7 +150,19 @@ FOR_PEOPLE = {"text", "full", "concise", "html", "md", "csv", "dot", "python", "
 
 def test_the_list_of_outputs_is_complete(capsys: pytest.CaptureFixture[str]) -> None:
     formats = {f"build {target}" for target in FILE_NAMES if target not in FOR_PEOPLE}
-    for command in ("new", "check", "format", "run", "mine", "matrix", "certify", "compare", "explain", "serve"):
+    for command in (
+        "new",
+        "check",
+        "format",
+        "run",
+        "mine",
+        "matrix",
+        "certify",
+        "compare",
+        "explain",
+        "falsify",
+        "serve",
+    ):
         with pytest.raises(SystemExit):
             main([command, "--help"])
         found = re.search(r"--format \{([a-z,]+)\}", capsys.readouterr().out)
@@ -163,7 +178,7 @@ def test_every_output_for_programs_has_version_commit_and_specification(
     before = {*folder.rglob("*")}
     if "mine" in name:
         (folder / "props.txt").write_bytes(TEXT.replace(b"> 2", b"> ?"))
-    main(OUTPUTS[name].split())
+    main(shlex.split(OUTPUTS[name]))
     written = [path.read_bytes() for path in {*folder.rglob("*")} - before if path.is_file()]
     found = b"".join([*written, capsys.readouterr().out.encode()])
     digest = sha256((folder / "props.txt").read_bytes()).hexdigest()

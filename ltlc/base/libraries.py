@@ -12,6 +12,7 @@ from ltlc.base.source import Source
 EXTRAS = {
     "recordings": ("isal", "lz4", "mcap", "pyarrow", "rosbags", "zstandard"),
     "campaigns": ("dask", "distributed", "fsspec"),
+    "falsify": ("cma",),
     "editor": ("lsprotocol", "pygls"),
 }
 """The modules that an extra of the package brings, by its name."""

@@ -12,6 +12,7 @@ from typing import Protocol
 
 from ltlc.base.errors import UnusableInput
 from ltlc.base.limits import Budget
+from ltlc.inputs.recordings import open_recording
 from ltlc.inputs.recordings.given import TIME, GivenTable
 from ltlc.inputs.recordings.parquet import arrow_table
 from ltlc.inputs.recordings.reading import ReadOptions, Stamp
@@ -20,7 +21,7 @@ from ltlc.interfaces.api.prepare import Prepared, Text, encoding_of, folders, pr
 from ltlc.interfaces.api.results import Run
 from ltlc.interfaces.api.times import Seconds, limit_of, needs_time
 from ltlc.monitoring.columns.measuring import Curve
-from ltlc.monitoring.judging.run import Judge, Open
+from ltlc.monitoring.judging.run import Judge, Open, RunReport
 
 Row = Mapping[str, object]
 """Values by signal; a signal that is missing or None has no sample."""
@@ -133,12 +134,20 @@ def _stamp(name: str) -> Stamp:
 
 def _judged(prepared: Prepared, judge: Judge, recording: Recorded) -> Run:
     """What one recording shows. Raises UnusableInput."""
-    path = NAME
+    path, opener = opening(prepared, recording)
+    judge = judge if opener is judge.open else replace(judge, open=opener)
+    return run_of(prepared, judge, path, judge.judge(path))
+
+
+def opening(prepared: Prepared, recording: Recorded) -> tuple[Path, Open]:
+    """What `recording` is called, and what opens it. Raises UnusableInput."""
     if isinstance(recording, str | PathLike):
-        path = Path(recording)
-    else:
-        judge = replace(judge, open=_opener(prepared, recording))
-    report = judge.judge(path)
+        return Path(recording), open_recording
+    return NAME, _opener(prepared, recording)
+
+
+def run_of(prepared: Prepared, judge: Judge, path: Path, report: RunReport) -> Run:
+    """What `judge` found in the recording at `path`. Raises UnusableInput if nothing could be judged."""
     if report.session is None:
         raise UnusableInput(report.diagnostics)
     told = replace(report, diagnostics=(*prepared.diagnostics, *report.diagnostics))

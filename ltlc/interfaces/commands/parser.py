@@ -24,6 +24,7 @@ COMMANDS = {
     "build": "make monitors, judge them, and write a ROS 2 node or another target",
     "run": "judge a recorded run",
     "mine": "find the tightest values for `?` with which recorded runs pass",
+    "falsify": "search parameters and inputs of a simulation that violate a property, and shrink what is found",
     "matrix": "show which requirement is verified by which property, with which results, and what is not covered",
     "certify": "check certificates made by someone else, trusting neither Spot nor their monitors",
     "compare": "compare encodings of a sentence, formulas, or guards, and show runs that distinguish them",

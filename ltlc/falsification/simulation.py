@@ -1,0 +1,71 @@
+"""A simulation that was run and judged, or that failed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import field
+
+from ltlc.dataclass import dataclass
+from ltlc.falsification.assignment import Assignment
+from ltlc.monitoring.judging.run import RunReport
+from ltlc.runtime.session import Session
+from ltlc.runtime.tracking import Track
+from ltlc.semantics.verdicts import Verdict
+
+
+class SimulationError(Exception):
+    """A simulation has failed: it has no recording that can be judged, for the reason that is the text."""
+
+
+Simulate = Callable[[Assignment], RunReport]
+"""Simulates, and judges what was recorded, which could all be read. Raises SimulationError."""
+
+
+@dataclass(frozen=True)
+class Simulated:
+    """A simulation: its number, from 1 on, what it was given, and what came of it.
+
+    It has `verdicts` and `margins` by property, the latter infinite where no comparison decides, and missing where the
+    property cannot be measured; or it failed, as `failure` says. The `report` is there if a property is violated.
+    """
+
+    number: int
+    assignment: Assignment
+    failure: str = ""
+    verdicts: Mapping[str, Verdict] = field(default_factory=dict)
+    margins: Mapping[str, float] = field(default_factory=dict)
+    report: RunReport | None = None
+
+    @property
+    def session(self) -> Session | None:
+        """The state of the run in which a property is violated."""
+        return None if self.report is None else self.report.session
+
+    @property
+    def violated(self) -> Track | None:
+        """The property that was violated first; None if none was."""
+        if self.session is None:
+            return None
+        found = [track for track in self.session.tracks if track.verdict is Verdict.VIOLATED]
+        return min(found, key=lambda track: track.decided_at.time if track.decided_at else 0)
+
+    @property
+    def ended(self) -> float | None:
+        """How long after the beginning of the run that was, in s; None if it is not known."""
+        track = self.violated
+        if track is None or track.decided_at is None or self.session is None or self.session.beginning is None:
+            return None
+        return (track.decided_at.time - self.session.beginning) / 1e9
+
+
+def whole(report: RunReport) -> RunReport:
+    """The same, if its recording could be read to the end. Raises SimulationError."""
+    if report.session is None or report.is_damaged:
+        found = report.diagnostics[-1]
+        raise SimulationError("; ".join(filter(None, [f"its recording cannot be judged: {found.message}", found.help])))
+    return report
+
+
+def is_violated(report: RunReport) -> bool:
+    """Whether a property is."""
+    return report.session is not None and any(track.verdict is Verdict.VIOLATED for track in report.session.tracks)

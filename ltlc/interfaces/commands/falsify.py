@@ -1,0 +1,176 @@
+"""`ltlc falsify`: parameters and inputs of a simulation with which a property is violated."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import shutil
+import sys
+from pathlib import Path
+
+from ltlc.base.files import scratch
+from ltlc.falsification import keeping
+from ltlc.falsification import report as reports
+from ltlc.falsification.assignment import Assignment
+from ltlc.falsification.command import Command, command_of
+from ltlc.falsification.falsify import Falsification, Watch, falsify
+from ltlc.falsification.parameters import space_of
+from ltlc.falsification.simulation import Simulated, SimulationError, is_violated, whole
+from ltlc.inputs.recordings.digests import digests
+from ltlc.inputs.recordings.reading import ReadOptions
+from ltlc.interfaces.api.prepare import Prepared
+from ltlc.interfaces.commands import arguments
+from ltlc.interfaces.commands.common import compile_file, report, unusable, unwritable, without_notes
+from ltlc.monitoring.judging.run import Judge, RunReport
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """What `ltlc falsify` takes."""
+    arguments.add_specification(parser)
+    parser.add_argument(
+        "--simulate",
+        metavar="COMMAND",
+        required=True,
+        help="simulates once: it gets {NAME} of a parameter or {parameters}, a JSON file with all of them, and writes "
+        "a recording to {recording} with an ending, as in {recording}.mcap",
+    )
+    parser.add_argument(
+        "--parameter",
+        action="append",
+        default=[],
+        metavar="NAME=VALUES",
+        help="what may be changed: speed=0.2..1.5, speed=0.2..0.5..1.5 with a default, boxes:int=0..5, floor=dry,wet; "
+        "may be repeated",
+    )
+    parser.add_argument(
+        "--input",
+        action="append",
+        default=[],
+        metavar="NAME=VALUES@POINTS",
+        help="what changes during a run: throttle=-1..1@8 has eight control points, which are as far apart; "
+        "may be repeated",
+    )
+    parser.add_argument("--seconds", type=float, help="how long a simulation is to run; needed for --input")
+    parser.add_argument(
+        "--simulations", type=arguments.count, default=100, metavar="N", help="how many at most (default: %(default)s)"
+    )
+    parser.add_argument(
+        "--seed", type=_seed, default=0, metavar="N", help="another one searches elsewhere (default: %(default)s)"
+    )
+    parser.add_argument(
+        "--time-limit",
+        type=arguments.duration,
+        default=60 * 10**9,
+        metavar="DURATION",
+        help="a simulation that takes longer is ended, and has failed (default: 60 s)",
+    )
+    parser.add_argument(
+        "--keep",
+        type=Path,
+        default=Path("falsified"),
+        metavar="DIR",
+        help="the folder for the recording and the parameters of what is found (default: %(default)s)",
+    )
+    parser.add_argument("--format", choices=("text", "json"), default="text")
+    arguments.add_reading(parser)
+    arguments.add_budget(parser, "limits for translating one property", 10.0)
+
+
+def _seed(text: str) -> int:
+    if not (text.isascii() and text.isdecimal() and len(text) < 10):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a whole number from 0 on")
+    return int(text)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Search, report, and keep what is found."""
+    try:
+        space = space_of(options.parameter, options.input, options.seconds)
+        command = command_of(options.simulate, space, options.time_limit)
+    except ValueError as error:
+        return unusable(str(error))
+    try:
+        keeping.refuse(options.keep)
+    except OSError as error:
+        return unwritable(options.keep, error)
+    prepared = compile_file(options)
+    if isinstance(prepared, int):
+        return prepared
+    with scratch() as folder:
+        simulations = _Simulations(command, _judge(prepared, options), folder)
+        try:
+            found = falsify(simulations, space, options.simulations, options.seed, (), _watch(options))
+        except SimulationError as error:
+            return unusable(f"the first simulation, with all defaults, failed: {error}")
+        return _told(found, prepared, simulations, options)
+
+
+def _judge(prepared: Prepared, options: argparse.Namespace) -> Judge:
+    reading = ReadOptions(message_paths=tuple(map(str, options.msg_path)))
+    remarks = prepared.late
+    return Judge(
+        prepared.compiled,
+        prepared.specification,
+        reading,
+        remarks=remarks,
+        hashed=False,
+        finds_all=False,
+        measures=True,
+    )
+
+
+class _Simulations:
+    """Simulates by a command in a folder for each time, and judges; folders with violations stay, by assignment."""
+
+    def __init__(self, command: Command, judge: Judge, folder: Path) -> None:
+        self._command = command
+        self._judge = judge
+        self._folder = folder
+        self._count = 0
+        self.recordings: dict[str, Path] = {}
+
+    def __call__(self, assignment: Assignment) -> RunReport:
+        self._count += 1
+        folder = self._folder / str(self._count)
+        folder.mkdir()
+        is_kept = False
+        try:
+            path = self._command(assignment, folder)
+            found = whole(self._judge.judge(path))
+            if self._count == 1:
+                report(without_notes(found.diagnostics))
+            if is_kept := is_violated(found):
+                self.recordings[assignment.key] = path
+            return found
+        finally:
+            if not is_kept:
+                shutil.rmtree(folder)
+
+
+def _watch(options: argparse.Namespace) -> Watch | None:
+    """Says on stderr what came of each simulation."""
+    if options.quiet or options.format != "text":
+        return None
+
+    def watch(simulated: Simulated, what_for: str) -> None:
+        if simulated.number > 1 or not simulated.failure:  # which is reported otherwise
+            print(reports.simulated_text(simulated, what_for), file=sys.stderr, flush=True)
+
+    return watch
+
+
+def _told(found: Falsification, prepared: Prepared, simulations: _Simulations, options: argparse.Namespace) -> int:
+    """Print the report, and keep what was found; the exit code."""
+    shown = found.smallest or found.found
+    path = None if shown is None else simulations.recordings[shown.assignment.key]
+    files = () if path is None else digests(path)
+    document = json.dumps(reports.document(found, prepared.specification.source, files), indent=2) + "\n"
+    sys.stdout.write(document if options.format == "json" else reports.text(found))
+    if path is not None:
+        try:
+            keeping.keep(path.parent, options.keep, document)
+        except OSError as error:
+            return unwritable(options.keep, error)
+        if not options.quiet:
+            print(f"ltlc: wrote {options.keep}: {path.name}, parameters.json, {keeping.REPORT}", file=sys.stderr)
+    return found.exit_code
