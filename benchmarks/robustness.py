@@ -3,8 +3,9 @@
     OPENBLAS_NUM_THREADS=1 python -m benchmarks.robustness --peers SITE-PACKAGES [--rows N] [--steps N] [--rounds N]
 
 All is in one process and one run; a figure is the median over rounds that go around in turn, CPU time. rtamt evaluates
-a discrete-time specification over the first `--steps` steps, at 1 Hz, whose numbers have to be those of ltlc; ltlc
-takes all rows. Both start from columns: arrays here, lists there.
+the whole signal at once, over the first `--steps` steps, at 1 Hz, whose numbers have to be those of ltlc; ltlc takes
+all rows. Both start from columns: arrays here, lists there. In dense time rtamt, like ltlc, reads when samples came;
+in discrete time a bound is a number of samples.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ import argparse
 import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -81,17 +82,36 @@ def measured(judged: Judged, columns: Signals) -> Callable[[], Sequence[float]]:
     return measure
 
 
-def rtamt_over(case: Case, columns: Signals) -> Callable[[], Sequence[float]]:
-    """The same by rtamt."""
+def discrete(case: Case, columns: Signals) -> Callable[[], Sequence[float]]:
+    """The same by rtamt, in discrete time."""
     import rtamt
 
-    specification = rtamt.StlDiscreteTimeSpecification()
+    specification = _specified(rtamt.StlDiscreteTimeSpecification(), case, columns)
+    data = {"time": list(range(len(columns["v"]))), **{name: values.tolist() for name, values in columns.items()}}
+    return lambda: [margin for _, margin in specification.evaluate(data)]
+
+
+def dense(case: Case, columns: Signals) -> Callable[[], Sequence[Sequence[float]]]:
+    """The same by rtamt, in dense time: a time and a number wherever the number changes."""
+    import rtamt
+
+    specification = _specified(rtamt.StlDenseTimeSpecification(), case, columns)
+    data = [[name, [[*each] for each in enumerate(values.tolist())]] for name, values in columns.items()]
+    return lambda: specification.evaluate(*data)
+
+
+def _specified(specification: Any, case: Case, columns: Signals) -> Any:
     for name in (*columns, "out"):
         specification.declare_var(name, "float")
     specification.spec = f"out = {case.stl}"
     specification.parse()
-    data = {"time": list(range(len(columns["v"]))), **{name: values.tolist() for name, values in columns.items()}}
-    return lambda: [margin for _, margin in specification.evaluate(data)]
+    return specification
+
+
+def _at_steps(changes: Sequence[Sequence[float]], count: int) -> Sequence[float]:
+    """A number for each step."""
+    times, margins = np.array(changes).T
+    return margins[times.searchsorted(np.arange(count), "right") - 1]  # type: ignore[no-any-return]
 
 
 def ready(way: Callable[[], object]) -> Prepared:
@@ -100,21 +120,23 @@ def ready(way: Callable[[], object]) -> Prepared:
 
 
 def compare(case: Case, rows: int, steps: int, rounds: int) -> bool:
-    """Whether both have the same numbers; with a line that says how long both take."""
+    """Whether ltlc and rtamt in discrete time have the same numbers; with a line that says how long all take."""
     columns = signals(rows)
     first = {name: values[:steps] for name, values in columns.items()}
     judged = Judged([case.ltlc], list(columns))
-    ours, theirs = measured(judged, first)(), rtamt_over(case, first)()
-    is_equal = bool(np.array_equal(np.asarray(ours), np.asarray(theirs)))
-    ways = {"ltlc": ready(measured(judged, columns)), "rtamt": ready(rtamt_over(case, first))}
-    took = medians(ways, rounds)
-    each = {"ltlc": took["ltlc"] / rows, "rtamt": took["rtamt"] / steps}
-    print(
-        f"| {case.name} | {'yes' if is_equal else 'NO'} | {each['ltlc']:.1f} | {each['rtamt']:,.0f} "
-        f"| {each['rtamt'] / each['ltlc']:,.0f} |",
-        flush=True,
+    ours, ways = measured(judged, first)(), {"dense": dense(case, first), "discrete": discrete(case, first)}
+    are_equal = {
+        "discrete": np.array_equal(np.asarray(ours), np.asarray(ways["discrete"]())),
+        "dense": np.array_equal(np.asarray(ours), _at_steps(ways["dense"](), steps)),  # type: ignore[arg-type]
+    }
+    took = medians(
+        {"ltlc": ready(measured(judged, columns)), **{name: ready(way) for name, way in ways.items()}}, rounds
     )
-    return is_equal
+    ns = took["ltlc"] / rows
+    slow = [f"{took[name] / steps:,.0f} | {took[name] / steps / ns:,.0f}" for name in ways]
+    equal = ", ".join(name for name, is_equal in are_equal.items() if is_equal) or "NO"
+    print(f"| {case.name} | {equal} | {ns:.1f} | {' | '.join(slow)} |", flush=True)
+    return are_equal["discrete"]
 
 
 def main() -> int:
@@ -126,7 +148,8 @@ def main() -> int:
     parser.add_argument("--rounds", type=int, default=5)
     options = parser.parse_args()
     sys.path.append(str(options.peers))
-    print("| property | equal | ltlc, ns a step | rtamt, ns a step | times |\n|---|---|---|---|---|")
+    print("| property | equal to rtamt in | ltlc, ns a step | rtamt, dense time | times | discrete time | times |")
+    print("|---|---|---|---|---|---|---|")
     found = [compare(case, options.rows, options.steps, options.rounds) for case in CASES]
     return 0 if all(found) else 1
 

@@ -18,10 +18,11 @@ from ltlc.backends.python.load import load_plan
 from ltlc.base.source import Source
 from ltlc.frontend.language import load_text
 from ltlc.inputs.recordings.rows import Row
-from ltlc.monitoring.columns import timeline
+from ltlc.monitoring.columns import extremes, timeline
 from ltlc.monitoring.columns.measuring import Curve, Measuring
+from ltlc.monitoring.columns.past import Predicates
 from ltlc.monitoring.columns.prepared import prepare_all
-from ltlc.monitoring.columns.robustness import Robustness
+from ltlc.monitoring.columns.robustness import Robustness, at_steps
 from ltlc.monitoring.columns.series import UnsupportedError
 from ltlc.monitoring.columns.session import ByBlocks
 from ltlc.monitoring.columns.timeline import Timeline
@@ -42,7 +43,10 @@ from ltlc.specification.margins import by_how_much
 def test_columns_have_the_robustness_of_the_definition_at_every_step(
     seed: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(timeline, "BLOCK", seed % 3 + 1)
+    for room, name in ((extremes, "BLOCK"), (extremes, "WINDOWS"), (timeline, "SEARCHED")):
+        monkeypatch.setattr(room, name, seed % 3 + 1)
+    monkeypatch.setattr(extremes, "LANE", seed % 3 + 2)
+    monkeypatch.setattr(extremes, "LANES", seed % 3 + 3)
     property_, steps, until, past, seen = measured_run(seed)
     news = {each.name for part in predicates(property_) for each in atoms_within(part) if isinstance(each, News)}
     line = Timeline(np.array([step.time for step in steps]), until)
@@ -50,14 +54,15 @@ def test_columns_have_the_robustness_of_the_definition_at_every_step(
     run = with_past(held(steps, until, news), past, seen.session)
     assert len(run) == line.count
     try:
-        measured = Robustness(line, margins, dict.fromkeys(news, seen.session))
-        found, at_steps = measured.of(property_), measured.at_steps(property_)
+        since = dict.fromkeys(news, seen.session)
+        found = Robustness(line, Predicates(line, margins, since)).of(property_)
+        of_steps = at_steps(property_, line, margins, since)
     except UnsupportedError:
         assert "Within(" in repr(property_)
         return
     expected = [robustness(run[k:], property_) for k in range(line.count)]
     assert found.at(np.arange(line.count)).tolist() == expected
-    assert at_steps.tolist() == [expected[k] for k in line.steps.tolist()]
+    assert of_steps.tolist() == [expected[k] for k in line.steps.tolist()]
 
 
 class Captured:

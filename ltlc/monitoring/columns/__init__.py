@@ -29,5 +29,6 @@ were one run (`slices`). What columns cannot do exactly raises `UnsupportedError
 this block, and `ltlc run --timing` says so.
 
 By how much properties hold is computed beside all this, from the same samples (`measuring`): the margins of conditions
-(`margins`), and of these that of the property, piece by piece (`robustness`, `timeline`).
+(`margins`), of these that of state predicates (`past`) and of the property (`robustness`), piece by piece (`timeline`,
+`extremes`).
 """

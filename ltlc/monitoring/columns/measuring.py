@@ -15,7 +15,7 @@ from ltlc.inputs.recordings.blocks import Array, Block, Places
 from ltlc.monitoring.columns.derived import derive
 from ltlc.monitoring.columns.margins import margins_of
 from ltlc.monitoring.columns.prepared import Prepared
-from ltlc.monitoring.columns.robustness import Robustness
+from ltlc.monitoring.columns.robustness import at_steps
 from ltlc.monitoring.columns.series import Columns, Steps, UnsupportedError
 from ltlc.monitoring.columns.timeline import Timeline
 from ltlc.monitoring.columns.values import not_numbers
@@ -104,12 +104,14 @@ class _Gathered:
         line = Timeline(times[:count], end)
         margins = {name: _joined(parts)[:count] for name, parts in self._margins.items()}
         try:
-            found = Robustness(line, margins, dict.fromkeys(self._heard, began) | self._since).at_steps(
-                self._of.property
-            )
+            found = at_steps(self._of.property, line, margins, dict.fromkeys(self._heard, began) | self._since)
         except UnsupportedError as error:
             return Curve(reason=str(error))
-        return Curve(line.times, np.array(found), decided=_first_with(abs(float(found[0])), margins, line.times))
+        return Curve(
+            line.times,
+            np.require(found, requirements=("C", "W")),
+            decided=_first_with(abs(float(found[0])), margins, line.times),
+        )
 
 
 def _joined(parts: Sequence[Array]) -> Array:

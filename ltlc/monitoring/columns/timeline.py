@@ -1,15 +1,12 @@
-"""Margins along a run: numbers that stay the same from one instant to a later one, and their extremes over windows.
+"""Margins along a run: numbers that stay the same from one instant to a later one.
 
 The instants of a run are numbered: its steps, and each nanosecond at which a letter is held. Nothing is made for each,
 only for each *piece*, from one instant up to the next at which something changes.
-
-What an operator does at an instant with its value at the next one is a *clamp*, x ↦ max(low, min(high, x)). Clamps are
-closed under composition, so that of many is one, and to take it several times at a piece is to take it once.
 """
 
 from __future__ import annotations
 
-from functools import cached_property
+from functools import cached_property, reduce
 from typing import NamedTuple
 
 import numpy as np
@@ -18,7 +15,10 @@ from ltlc.dataclass import dataclass
 from ltlc.inputs.recordings.blocks import Array, Places
 from ltlc.monitoring.columns.bits import union
 from ltlc.semantics.durations import Nanoseconds
-from ltlc.semantics.robustness import FALSE, TRUE
+from ltlc.semantics.robustness import FALSE
+
+SEARCHED = 1 << 13
+"""So many times are searched for together."""
 
 
 class Pieces(NamedTuple):
@@ -30,15 +30,38 @@ class Pieces(NamedTuple):
 
     def at(self, instants: Places) -> Array:
         """The margin at each of these instants."""
-        if instants is self.starts:
-            return self.margins
-        found: Array = self.margins[self.starts.searchsorted(instants, "right") - 1]
-        return found
+        return self.margins if instants is self.starts else self.margins[pieces_at(self.starts, instants)]
+
+
+def pieces_at(starts: Places, instants: Places) -> Places:
+    """Which piece each of `instants` is in."""
+    if instants is starts:
+        return np.arange(len(starts))
+    found: Places = starts.searchsorted(instants, "right") - 1
+    return found
 
 
 def together(*parts: Places) -> Places:
     """Where something starts in any of the `parts`; the same object where all are."""
     return parts[0] if all(part is parts[0] for part in parts) else union(parts)
+
+
+def negated(pieces: Pieces, is_new: bool = False) -> Pieces:
+    """By how much it does not hold; where it `is_new`, and nothing else refers to it, in place."""
+    margins = np.negative(pieces.margins, out=pieces.margins if is_new else None)
+    return Pieces(pieces.starts, margins, -pieces.after)
+
+
+def least(*parts: Pieces) -> Pieces:
+    """By how much all hold."""
+    starts = together(*(part.starts for part in parts))
+    return Pieces(starts, reduce(np.minimum, [part.at(starts) for part in parts]), min(part.after for part in parts))
+
+
+def greatest(*parts: Pieces) -> Pieces:
+    """By how much one holds."""
+    starts = together(*(part.starts for part in parts))
+    return Pieces(starts, reduce(np.maximum, [part.at(starts) for part in parts]), max(part.after for part in parts))
 
 
 @dataclass(frozen=True)
@@ -67,10 +90,9 @@ class Timeline:
 
     def time(self, instants: Places) -> Places:
         """The times of instants."""
-        numbers = (
-            np.arange(len(self.times)) if instants is self.steps else self.steps.searchsorted(instants, "right") - 1
-        )
-        found: Places = instants - numbers + self.times[0]
+        if instants is self.steps:
+            return self.times
+        found: Places = instants - pieces_at(self.steps, instants) + self.times[0]
         return found
 
     def first_at(self, times: Places) -> Places:
@@ -83,93 +105,44 @@ class Timeline:
         """Those of `starts` that are instants."""
         return starts[starts < self.count]
 
+    def reaching(self, times: Places, duration: Nanoseconds) -> Places:
+        """From which instants on a window of `duration` reaches one of `times`."""
+        return self.within(self.first_at(times - duration))
 
-BLOCK = 1024
-"""So many margins are looked at together."""
+
+class StepsAlone(Timeline):
+    """The same run as if time did not pass between its steps: these are its instants."""
+
+    @cached_property
+    def steps(self) -> Places:
+        """The numbers of the steps."""
+        return np.arange(len(self.times))
+
+    @cached_property
+    def count(self) -> int:
+        """How many steps there are."""
+        return len(self.times)
+
+    def time(self, instants: Places) -> Places:
+        """The times of steps."""
+        return self.times if instants is self.steps else self.times[instants]
+
+    def reaching(self, times: Places, duration: Nanoseconds) -> Places:
+        """A window is looked at from every step."""
+        return self.steps
 
 
-def least_from(margins: Array) -> Array:
-    """The least from each margin on: blocks that have none below what comes after them have that throughout."""
-    found, last = np.empty(len(margins)), TRUE
-    starts = np.arange(0, len(margins), BLOCK)
-    least = np.minimum.reduceat(margins, starts).tolist()
-    for start, of_block in zip(starts[::-1].tolist(), reversed(least), strict=True):
-        block = slice(start, start + BLOCK)
-        if of_block < last:
-            np.minimum(np.minimum.accumulate(margins[block][::-1])[::-1], last, out=found[block])
-            last = of_block
+def ends_at(times: Places, until: Places) -> Places:
+    """How many of `times` are not after each of `until`, both in order: mostly one more from one to the next."""
+    found = np.empty(len(until), np.int64)
+    for start in range(0, len(until), SEARCHED):
+        asked = until[start : start + SEARCHED]
+        first, last = times.searchsorted(asked[[0, -1]], "right").tolist()
+        is_even = first > 0 and last - first == len(asked) - 1 and last < len(times)
+        if is_even and (times[first - 1 : last] <= asked).all() and (asked < times[first : last + 1]).all():
+            found[start : start + SEARCHED] = np.arange(first, last + 1)
+        elif first == last:
+            found[start : start + SEARCHED] = first
         else:
-            found[block] = last
-    return found
-
-
-class Clamps(NamedTuple):
-    """x ↦ max(low, min(high, x)), for each piece."""
-
-    low: Array
-    high: Array
-
-    def of(self, inner: Clamps) -> Clamps:
-        """These, of what `inner` makes."""
-        return Clamps(np.maximum(self.low, np.minimum(self.high, inner.low)), np.minimum(self.high, inner.high))
-
-    def taken(self, places: Places | slice) -> Clamps:
-        """Those at `places`."""
-        return Clamps(self.low[places], self.high[places])
-
-    def of_value(self, inner: Array | float) -> Array:
-        """What they make of a margin."""
-        found: Array = np.maximum(self.low, np.minimum(self.high, inner))
-        return found
-
-
-def backwards(clamps: Clamps, last: float) -> Array:
-    """For each piece, what all clamps from it on make of `last`, the one at the piece last of all.
-
-    Lanes side by side, then from one lane to the one before, then all of each lane.
-    """
-    count = len(clamps.low)
-    length = max(1, int(count**0.5))
-    lanes = -(-count // length)
-    low, high = np.full(lanes * length, FALSE), np.full(lanes * length, TRUE)
-    low[:count], high[:count] = clamps
-    by_place = Clamps(*(np.ascontiguousarray(part.reshape(lanes, length).T) for part in (low, high)))
-    for place in range(length - 2, -1, -1):
-        by_place.low[place], by_place.high[place] = by_place.taken(place).of(by_place.taken(place + 1))  # type: ignore[arg-type]
-    carried = np.empty(lanes)
-    for lane in range(lanes - 1, -1, -1):
-        carried[lane] = last
-        last = max(float(by_place.low[0, lane]), min(float(by_place.high[0, lane]), last))
-    found: Array = by_place.of_value(carried).T.reshape(-1)[:count]
-    return found
-
-
-def over_windows(clamps: Clamps, firsts: Places, ends: Places, last: float) -> Array:
-    """What the clamps of the pieces from each of `firsts` to before its end make of `last`, that at the first last."""
-    found = Clamps(np.full(len(firsts), FALSE), np.full(len(firsts), TRUE))
-    at, rest, level = firsts.copy(), ends - firsts, 0
-    while rest.any():
-        has = np.flatnonzero(rest & 1)
-        if len(has):
-            found.low[has], found.high[has] = found.taken(has).of(clamps.taken(at[has]))
-            at[has] += 1 << level
-        rest >>= 1
-        half = 1 << level
-        clamps = clamps.taken(slice(None, -half)).of(clamps.taken(slice(half, None)))
-        level += 1
-    return found.of_value(last)
-
-
-def least_of_windows(margins: Array, firsts: Places, ends: Places) -> Array:
-    """The least of the margins of the pieces from each of `firsts` to before its end, infinite where there is none.
-
-    Of two halves that overlap, each a power of two long.
-    """
-    found = np.full(len(firsts), TRUE)
-    levels = np.frexp((ends - firsts).astype(np.float64))[1] - 1
-    for level in range(int(levels.max(initial=-1)) + 1):
-        at = np.flatnonzero(levels == level)
-        if len(at):
-            found[at] = np.minimum(margins.take(firsts.take(at)), margins.take(ends.take(at) - (1 << level)))
-        margins = np.minimum(margins[: -(1 << level)], margins[1 << level :])
+            found[start : start + SEARCHED] = times[first:last].searchsorted(asked, "right") + first
     return found
