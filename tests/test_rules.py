@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import struct
 from collections.abc import Sequence
 from pathlib import Path
@@ -15,7 +16,9 @@ from ulog_support import PRIMITIVES, LogWriter
 from ltlc import rules
 from ltlc.base.source import Source
 from ltlc.cli import main
+from ltlc.frontend.language import load_text, types_for
 from ltlc.frontend.layout import layout
+from ltlc.inputs.messages.definitions import read_by_packs
 
 FIXTURES = Path(__file__).parent / "fixtures" / "rules"
 FLIGHTS = Path(__file__).parents[2] / "shared" / "data" / "ulog"
@@ -100,6 +103,29 @@ def test_what_several_rules_define_is_the_same_and_every_rule_has_its_place_in_t
     for rule in pack.rules:
         english = next(line for line in rule.properties.splitlines() if line.startswith("##"))[3:]
         assert f"| `{name}/{rule.name}` | {english}" in page
+
+
+@pytest.mark.parametrize("name", rules.packs())
+def test_a_pack_is_understood_without_a_recording_and_without_definitions_of_messages(name: str) -> None:
+    specification, diagnostics = load_text(Source(f"@{name}", rules.pack(name).text()))
+    assert specification is not None, diagnostics
+    assert len(specification.properties) >= len(rules.pack(name).rules)
+
+
+def test_what_is_known_for_the_packs_is_what_they_read_and_is_not_taken_for_the_whole_message() -> None:
+    texts = [rules.pack(name).text() for name in rules.packs()]
+    read = {part for text in texts for part in re.findall(r"\w+", text)}
+    assert all(read >= message.fields.keys() - {"header"} for message in read_by_packs().values())
+    specification, diagnostics = load_text(Source("p", "decl s /s px4_msgs/VehicleStatus.nav_state\nnever s > 1"))
+    assert specification is None
+    assert "only the fields that rule packs read are known of it" in str(diagnostics[0].help)
+
+
+def test_what_is_known_for_the_packs_does_not_replace_the_definitions_of_a_recording(tmp_path: Path) -> None:
+    rows: Rows = [(0, 3, 0.5, "vehicle_status", {"arming_state": 2})]
+    types, _ = types_for(Source("@px4", rules.pack("px4").text()), (), [recording(tmp_path, "px4", rows)])
+    assert "px4_msgs/msg/VehicleStatus" in types.messages
+    assert not any(message.is_partial for message in types.messages.values())
 
 
 def test_a_rule_about_what_is_not_in_the_log_is_reported_as_not_checked(

@@ -16,7 +16,7 @@ from ltlc.frontend.language.names import Checker
 from ltlc.frontend.language.resolve import checker_of, sound_part
 from ltlc.frontend.syntax.parse import parse
 from ltlc.frontend.syntax.tree import Declaration, ObjectFromTopic, SyntaxTree
-from ltlc.inputs.messages.definitions import BadPath, MessageTypes, shipped
+from ltlc.inputs.messages.definitions import BadPath, MessageTypes, read_by_packs, shipped
 from ltlc.semantics.encodings import EPISODE, Encoding
 from ltlc.specification.specification import Specification
 
@@ -82,13 +82,16 @@ def types_for(
 ) -> tuple[MessageTypes, list[Diagnostic]]:
     """The types that `source` may name, which is about `recordings`, and what is wrong with `message_paths`.
 
-    Where they differ, `message_paths` win over recordings, and these over ROS 2 Jazzy.
+    Where they differ, `message_paths` win over recordings, and these over ROS 2 Jazzy. Without recordings, what rule
+    packs read is known besides.
     """
     if not message_paths and not recordings:
-        return MessageTypes(shipped()), []
+        return MessageTypes({**read_by_packs(), **shipped()}), []
     from ltlc.inputs.recordings.bags.known import message_types
 
     types, bad_paths = message_types(message_paths, recordings, partial(_declared_types, source))
+    if not recordings:
+        types = MessageTypes({**read_by_packs(), **types.messages})
     return types, [_bad_path(source, bad) for bad in bad_paths]
 
 

@@ -245,6 +245,8 @@ def _inside(part: syntax.Word, known: Message, types: MessageTypes) -> Help | No
 
 def _fields_help(part: syntax.Word, known: Message) -> Help:
     """The fields to choose from, each a fix if they are few."""
+    if known.is_partial:
+        return Help("only the fields that rule packs read are known of it: `--msg-path` adds its package or a bag")
     if not known.fields:
         return Help("it has no fields")
     fixes = tuple(writing(part.span, name) for name in known.fields) if len(known.fields) <= MOST_CHOICES else ()

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from functools import cache, cached_property
 from pathlib import Path
 
@@ -44,10 +45,14 @@ class FieldType:
 
 @dataclass(frozen=True, slots=True)
 class Message:
-    """The fields of a message type and its constants, by name and in their order."""
+    """The fields of a message type and its constants, by name and in their order.
+
+    If `is_partial`, there are others: nothing is read from the wire by it.
+    """
 
     fields: Mapping[str, FieldType]
     constants: Mapping[str, Constant]
+    is_partial: bool = False
 
 
 @dataclass(frozen=True)
@@ -107,6 +112,13 @@ def shipped(distribution: str = JAZZY) -> Mapping[str, Message]:
         return messages_of(distribution)
     data = json.loads((Path(__file__).parent / "jazzy.json").read_bytes())
     return {name: _message(*definition) for name, definition in data["messages"].items()}
+
+
+@cache
+def read_by_packs() -> Mapping[str, Message]:
+    """The messages beside those of Jazzy from which rule packs read, each with the fields that they read."""
+    data = json.loads((Path(__file__).parent / "packs.json").read_bytes())
+    return {name: replace(_message(fields, {}), is_partial=True) for name, fields in data.items()}
 
 
 def _message(fields: dict[str, str], constants: dict[str, Constant]) -> Message:
