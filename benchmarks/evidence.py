@@ -5,8 +5,11 @@
     python -m benchmarks.evidence --cost [--repeat N]
 
 Each seed is a random bag that is judged by all forms of properties that evidence covers (`tests/evidencing.py`), with a
-rate or without; `recorded.py`, which shares nothing with ltlc, must find the letters that are written. What was tried
-is kept in a journal, a line for each seed, so that a campaign that was stopped goes on, up to N property-runs in all.
+rate or without; `recorded.py`, which shares nothing with ltlc, must find the letters that are written. It is also ten
+random properties, drawn as for `benchmarks.differential`, and four recordings of them in any form: all three checks
+must accept what is written, and refuse it after any single edit, though the digest at the end is set right. What was
+tried is kept in a journal, a line for each seed, so that a campaign that was stopped goes on, up to N property-runs in
+all.
 With --cost, a bag of odometry is judged with and without `--evidence`, and read again. Exit code 1 if something
 differs.
 """
@@ -24,19 +27,36 @@ from resource import RUSAGE_CHILDREN, getrusage
 from statistics import median
 from subprocess import DEVNULL, run
 from tempfile import TemporaryDirectory
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 
-from evidencing import BEGINNING, EVERY, TYPES, disagreements, header, make, write_bag
+from evidencing import (
+    BEGINNING,
+    EVERY,
+    TYPES,
+    disagreements,
+    entries_of,
+    evidence_of,
+    header,
+    judge_of,
+    make,
+    refusals,
+    write_bag,
+)
 
+from benchmarks.differential import files, reference, targets
+from benchmarks.differential.draw import Draw
 from ltlc.assurance.evidence import recorded
+from ltlc.assurance.evidence.document import Claim, Document, digest, printed
+from ltlc.assurance.evidence.parsing import UnreadableEvidence, parsed
+from ltlc.semantics.verdicts import Verdict
 
 JOURNAL = Path(__file__).parents[1] / "build" / "evidence.jsonl"
-RUNS = len(EVERY)
-"""Property-runs on each bag."""
+PROPERTIES, RECORDINGS, EDITS = 10, 4, 5
+"""Random properties of a seed, recordings of them, and edits of the evidence of each."""
 
 MESSAGES = 100_000
 ODOMETRY = """
@@ -72,16 +92,76 @@ def main() -> int:
         cost(options.repeat)
         return 0
     if options.again is not None:
-        found = tried(options.again)
+        found = tried(options.again).found
         print("\n".join(found) or "as it should be")
         return 1 if found else 0
     return campaign(options.journal, options.seed, options.runs)
 
 
-def tried(seed: int) -> list[str]:
-    """What differs on the bag of one seed."""
+class Tried(NamedTuple):
+    """How many property-runs and edits were tried, and what was not as it should be."""
+
+    runs: int
+    edits: int
+    found: list[str]
+
+
+def tried(seed: int) -> Tried:
+    """What comes of one seed."""
     with TemporaryDirectory() as folder:
-        return list(disagreements(seed, Path(folder)))
+        found = list(disagreements(seed, Path(folder)))
+        other = drawn(Random(seed), Path(folder))
+    judge_of.cache_clear()
+    entries_of.cache_clear()
+    return Tried(len(EVERY) + other.runs, other.edits, found + other.found)
+
+
+def drawn(chance: Random, folder: Path) -> Tried:
+    """What comes of random properties."""
+    draw, runs, edits, found = Draw(chance), 0, 0, list[str]()
+    text = draw.specification(PROPERTIES)
+    try:
+        of = targets.monitors(text)
+    except targets.UnusableError:
+        return Tried(0, 0, [])
+    topics = sorted({topic for each in reference.properties(text).values() for topic in each.reads.all_topics})
+    for number in range(RECORDINGS):
+        recording = draw.recording([*topics, "/flag"], chance.random() < 0.6)
+        form = chance.choice([each for each in (*files.TABLES, *files.bag_forms(recording.rows)) if each != UNREAD])
+        (place := folder / str(number)).mkdir()
+        path = files.write(form, place, of, recording)
+        document = evidence_of(text, path)
+        runs += sum(isinstance(each, Claim) for each in document.properties)
+        refused = refusals(document, text, path)
+        found += [f"{form} {number}: {each}" for each in refused]
+        for _ in range(EDITS if runs and not refused else 0):
+            edits += 1
+            what, changed = edited(printed(document), chance)
+            if not isinstance(changed, UnreadableEvidence) and not refusals(changed, text, path):
+                found.append(f"{form} {number}: accepted after {what}")
+    return Tried(runs, edits, found)
+
+
+UNREAD = "mcap with chunk index"
+"""A form in which rosbags, and so `recorded.py`, finds no messages."""
+
+
+def edited(text: str, chance: Random) -> tuple[str, Document | UnreadableEvidence]:
+    """A document with one edit within its claims, and what it is."""
+    lines = text.splitlines()[:-1]
+    claimed = [n for n, line in enumerate(lines) if n > lines.index("") and line and not line.startswith("not-covered")]
+    number = chance.choice(claimed)
+    word, _, rest = lines[number].partition(" ")
+    place = chance.randrange(len(lines[number]))
+    was = lines[number][place]
+    other = chance.choice([each for each in ("0123456789" if was.isdigit() else "abn_. ") if each != was])
+    edits = [f"{lines[number][:place]}{other}{lines[number][place + 1 :]}", None]
+    if word == "verdict":
+        verdicts = [each.value for each in Verdict if each.value != rest.split()[0]]
+        edits.append(f"verdict {chance.choice(verdicts)} {rest.split()[1]}")
+    edit = chance.choice(edits)
+    body = "".join(f"{line}\n" for line in [*lines[:number], *([] if edit is None else [edit]), *lines[number + 1 :]])
+    return f"`{lines[number]}` became `{edit}`", parsed(f"{body}end sha256 {digest(body)}\n")
 
 
 def campaign(journal: Path, first: int, runs: int) -> int:
@@ -90,16 +170,17 @@ def campaign(journal: Path, first: int, runs: int) -> int:
     known = {each["seed"]: each for each in entries(journal)}
     with journal.open("a", encoding="utf-8") as file:
         for seed in count(first):
-            if len(known) * RUNS >= runs:
+            if sum(each["runs"] for each in known.values()) >= runs:
                 break
             if seed not in known:
-                known[seed] = {"seed": seed, "found": tried(seed)}
+                known[seed] = {"seed": seed, **tried(seed)._asdict()}
                 file.write(json.dumps(known[seed]) + "\n")
                 file.flush()
     wrong = [each for each in known.values() if each["found"]]
     for each in wrong:
         print(each["seed"], *each["found"], sep="\n  ")
-    print(f"{len(known)} bags, {len(known) * RUNS} property-runs, {len(wrong)} bags with differences")
+    total, edits = (sum(each[what] for each in known.values()) for what in ("runs", "edits"))
+    print(f"{len(known)} seeds, {total} property-runs, {edits} edits, {len(wrong)} seeds with differences")
     return 1 if wrong else 0
 
 

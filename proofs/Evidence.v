@@ -112,7 +112,7 @@ Definition is_one (J : judging) (x : part) : bool :=
 
 (** The letter that a part has for the monitor has to be allowed; and to lead back to the state that it leads to, so
     that it does not matter how many instants the part has. *)
-Definition judge_part (J : judging) (j : standing) (x : part) : option standing :=
+Definition judge_alike (J : judging) (j : standing) (x : part) : option standing :=
   let C := certificate_of J in
   let M := machine C in
   match whole_part J j x with
@@ -133,6 +133,29 @@ Definition judge_part (J : judging) (j : standing) (x : part) : option standing 
         end
       else None
   | None => None
+  end.
+
+Definition standing_dec (i j : standing) : {i = j} + {i <> j}.
+Proof.
+  repeat first [apply Nat.eq_dec | apply Bool.bool_dec | apply list_eq_dec; intros | decide equality].
+Defined.
+
+(** What is known after a part: if its instants are not alike, they have to have one time, and the later ones, of which
+    there may be none, to change nothing. So a clock may come due at the instant at which it is stopped. *)
+Definition judge_part (J : judging) (j : standing) (x : part) : option standing :=
+  match judge_alike J j x with
+  | Some i => Some i
+  | None =>
+      if from x =? upto x then
+        match judge_alike J j {| lets := lets x; from := from x; upto := upto x; single := true |} with
+        | Some i =>
+            match judge_alike J i x with
+            | Some i' => if standing_dec i i' then Some i else None
+            | None => None
+            end
+        | None => None
+        end
+      else None
   end.
 
 (** A letter that is held from u to v, in parts: cut where somebody says that a clock comes due. *)
@@ -232,7 +255,7 @@ Qed.
 Lemma same_verdict_is : forall v w, same_verdict v w = true <-> v = w.
 Proof. intros [] []; simpl; split; congruence. Qed.
 
-Lemma judge_part_inv : forall J j x j', judge_part J j x = Some j' ->
+Lemma judge_alike_inv : forall J j x j', judge_alike J j x = Some j' ->
   let C := certificate_of J in let M := machine C in let fuel := length (decisions M) in
   exists l, whole_part J j x = Some (l, remembers j', tally_so_far j', open_since j') /\
     at_letter (assumption C) l = true /\ step M fuel l (at_state j) = Some (at_state j') /\
@@ -241,12 +264,23 @@ Lemma judge_part_inv : forall J j x j', judge_part J j x = Some j' ->
     has_read j' = true /\
     since j' = if has_read j && same_verdict (verdict_shown j') (verdict_shown j) then since j else from x.
 Proof.
-  intros J j x j' H. cbv zeta. unfold judge_part in H.
+  intros J j x j' H. cbv zeta. unfold judge_alike in H.
   destruct (whole_part J j x) as [[[[l r] rs] cs]|]; [|congruence].
   destruct (at_letter _ l) eqn:HA; [|congruence]. destruct (step _ _ l (at_state j)) as [q|] eqn:H1; [|congruence].
   destruct (step _ _ l q) as [q'|] eqn:H2; [|congruence]. destruct (nth_error _ q) as [v|] eqn:H3; [|congruence].
   destruct (is_one J x || (q' =? q)) eqn:H4; [|congruence]. injection H as <-. exists l. simpl. repeat split; auto.
   apply orb_true_iff in H4. destruct H4 as [H4|H4]; auto. apply Nat.eqb_eq in H4. subst q'. auto.
+Qed.
+
+Lemma judge_part_inv : forall J j x j', judge_part J j x = Some j' -> judge_alike J j x = Some j' \/
+  from x = upto x /\ judge_alike J j {| lets := lets x; from := from x; upto := upto x; single := true |} = Some j' /\
+  judge_alike J j' x = Some j'.
+Proof.
+  intros J j x j' H. unfold judge_part in H. destruct (judge_alike J j x) as [i|] eqn:E; [injection H as <-; auto|].
+  destruct (Nat.eqb_spec (from x) (upto x)); [|congruence]. right. clear E.
+  destruct (judge_alike J j _) as [i|] eqn:E; [|congruence].
+  destruct (judge_alike J i x) as [i'|] eqn:E2; [|congruence]. destruct (standing_dec i i') as [<-|]; [|congruence].
+  injection H as <-. auto.
 Qed.
 
 (** * In time *)
@@ -307,11 +341,11 @@ Section InTime.
   Lemma right_at_first : right_at 0 at_first.
   Proof. repeat split; [apply reaches_start | intros k Hk; lia | intros; lia]. Qed.
 
-  Lemma judge_part_right : forall m n x j j', right_at m j -> part_of s t m n x -> judge_part J j x = Some j' ->
+  Lemma judge_alike_right : forall m n x j j', right_at m j -> part_of s t m n x -> judge_alike J j x = Some j' ->
     right_at n j'.
   Proof.
     intros m n x j j' (R1 & R2 & RT & RO & RS & R3 & R4) HP HJ. pose proof HP as (Hmn & _ & Hfrom & Hupto & Hone).
-    destruct (judge_part_inv J j x j' HJ) as (l & H1 & _ & H3 & H4 & H5 & H6 & H7).
+    destruct (judge_alike_inv J j x j' HJ) as (l & H1 & _ & H3 & H4 & H5 & H6 & H7).
       unfold whole_part in H1. cbn [certificate_of clocks_of session counted scoped J] in *.
     rewrite R3, negb_involutive in H1.
     destruct (counted_parts cs (m =? 0) (tally_so_far j) x) as [[y rs]|] eqn:EC; [|congruence].
@@ -341,6 +375,20 @@ Section InTime.
         * exists m. rewrite H7. repeat split; auto. intros _. exists (verdict_shown j).
           split; [|apply I3; lia]. intros E. rewrite E in EV. rewrite (proj2 (same_verdict_is _ _) eq_refl) in EV.
           discriminate EV.
+  Qed.
+
+  Lemma judge_part_right : forall m n x j j', right_at m j -> part_of s t m n x -> judge_part J j x = Some j' ->
+    right_at n j'.
+  Proof.
+    intros m n x j j' HR HP HJ. pose proof HP as (P1 & P2 & P3 & P4 & P5).
+    destruct (judge_part_inv J j x j' HJ) as [H|(E & H1 & H2)]; [now apply (judge_alike_right m n x j j')|].
+    assert (HM : right_at (S m) j').
+    { refine (judge_alike_right m (S m) _ j j' HR _ H1). unfold part_of. simpl. rewrite Nat.sub_0_r.
+      repeat split; auto; try lia. intros; apply P2; lia. }
+    destruct (Nat.eq_dec n (S m)) as [->|Hn]; auto. refine (judge_alike_right (S m) n x j' j' HM _ H2).
+    pose proof (Ht m (S m)). pose proof (Ht (S m) (n - 1)). repeat split; auto; try lia.
+    - intros. apply P2. lia.
+    - intros HX. specialize (P5 HX). lia.
   Qed.
 
   (** Time does not jump, so there is an instant at each cut. *)
@@ -453,10 +501,10 @@ Section Untimed.
     at_letter (assumption C) l = true /\ step M fuel l (at_state j) = Some (at_state j) /\
     nth_error (verdicts M) (at_state j) = Some (verdict_shown j).
 
-  Lemma judge_part_settles : forall l x j j', (forall a, lets x a = l a) -> judge_part J j x = Some j' ->
+  Lemma judge_alike_settles : forall l x j j', (forall a, lets x a = l a) -> judge_alike J j x = Some j' ->
     settled l j' /\ step M fuel l (at_state j) = Some (at_state j').
   Proof.
-    intros l x j j' Hl HJ. destruct (judge_part_inv J j x j' HJ) as (l' & H1 & H2 & H3 & H4 & H5 & _).
+    intros l x j j' Hl HJ. destruct (judge_alike_inv J j x j' HJ) as (l' & H1 & H2 & H3 & H4 & H5 & _).
     unfold is_one in H4. unfold whole_part in H1. cbn [certificate_of clocks_of session counted scoped J] in *.
     unfold judged in H1, H4.
     rewrite no_past, unbounded_distribute, unbounded_timers in H1, H4 by exact no_bounds. cbn in H1.
@@ -465,6 +513,13 @@ Section Untimed.
     assert (HL : forall q, step M fuel l q = step M fuel (timed_letter [] [] (lets x)) q).
     { intros q. unfold step. destruct (nth_error (edges M) q); auto. apply follow_same. intros a. now rewrite <- Hl. }
     repeat split; rewrite ?HL; auto. rewrite <- H2. apply at_letter_same. intros a _. now rewrite <- Hl.
+  Qed.
+
+  Lemma judge_part_settles : forall l x j j', (forall a, lets x a = l a) -> judge_part J j x = Some j' ->
+    settled l j' /\ step M fuel l (at_state j) = Some (at_state j').
+  Proof.
+    intros l x j j' Hl HJ. destruct (judge_part_inv J j x j' HJ) as [H|(_ & H & _)]; eapply judge_alike_settles;
+      try exact H; exact Hl.
   Qed.
 
   Lemma judge_held_settles : forall l l' v cuts u j j', (forall a, l' a = l a) -> settled l j ->

@@ -2,26 +2,32 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from dataclasses import replace
 from pathlib import Path
 from random import Random
 from typing import Any
 
+import numpy as np
 import pytest
+from bag_support import FORMS, Sent, made
 from evidencing import (
     BEGINNING,
     COUNTS,
     INSTANCES,
     OPENINGS,
     SLICES,
+    TYPES,
     disagreements,
     evidence_of,
     make,
     random_rows,
     refusals,
+    said_of,
     specification,
     write_bag,
+    write_table,
 )
 
 from ltlc.assurance.evidence.document import (
@@ -83,6 +89,59 @@ def test_all_checks_accept_the_evidence_of_random_bags(properties: list[str], tm
 @pytest.mark.parametrize("seed", range(3))
 def test_letters_of_these_forms_are_those_that_are_computed_anew_at_ticks_as_well(seed: int, tmp_path: Path) -> None:
     assert list(disagreements(seed, tmp_path, [*COUNTS, *OPENINGS, *INSTANCES, *SLICES])) == []
+
+
+LISTS = """
+decl ints /ints Int64MultiArray.data
+decl locked /marks MarkerArray.markers[].frame_locked
+p0: always nearest(0.5, ints) < 1
+p1: never all(locked)
+"""
+
+
+def test_lists_of_wide_integers_and_empty_lists_of_booleans_are_read_anew(tmp_path: Path) -> None:
+    marks, ints = "visualization_msgs/msg/MarkerArray", "std_msgs/msg/Int64MultiArray"
+    lists = (np.array(each, np.int64) for each in ([2**60, 1], [2], [-(2**60)]))
+    sent = [Sent("/ints", ints, BEGINNING + n, made(ints, data=each)) for n, each in enumerate(lists)]
+    sent.append(Sent("/marks", marks, BEGINNING, made(marks)))
+    bag = FORMS["mcap"](tmp_path, sent)
+    document = evidence_of(LISTS, bag)
+    assert [each.verdict for each in document.properties if isinstance(each, Claim)] == [Verdict.VIOLATED] * 2
+    assert refusals(document, LISTS, bag) == []
+
+
+def test_a_first_row_that_makes_no_step_may_have_the_time_at_which_the_session_begins(tmp_path: Path) -> None:
+    text = specification(["eventually (new x and x <= 0.3)"])
+    table = write_table(tmp_path / "table.csv", rows("/x", math.nan))
+    document = evidence_of(text, table)
+    assert only(document).verdict is Verdict.NOT_STARTED
+    assert refusals(document, text, table) == []
+
+
+def test_a_field_may_have_two_names_of_which_one_is_that_of_a_column(tmp_path: Path) -> None:
+    text = "object robot /robot Odometry\np: never robot.velocity.y > 2\nq: never robot.velocity.linear.y > 2\n"
+    (table := tmp_path / "table.csv").write_text("time,robot.velocity.y\n0,1.0\n1,3.0\n", encoding="utf-8")
+    document = evidence_of(text, table)
+    assert [each.verdict for each in document.properties if isinstance(each, Claim)] == [Verdict.VIOLATED] * 2
+    assert refusals(document, text, table) == []
+
+
+def test_ticks_of_what_waits_for_a_sample_do_not_begin_with_the_session(tmp_path: Path) -> None:
+    text = specification(["always (new x implies x - @{x, when x >= 0} < 1)"], "_rate_ = 3\n")
+    bag = bag_of(tmp_path, rows("/b", True, False), [(BEGINNING + SECOND // 2, *rows("/x", 1.0)[0][1:])])
+    document = evidence_of(text, bag)
+    assert document.head.rate == "3.0"
+    assert only(document).letters[0].time == BEGINNING + SECOND // 2
+    assert refusals(document, text, bag) == []
+
+
+def test_a_bag_of_which_rosbags_finds_no_messages_is_not_covered_by_the_reader(tmp_path: Path) -> None:
+    sent = [Sent(topic, TYPES[topic], time, message) for time, topic, message in rows("/x", 1.0, 3.0)]
+    bag = FORMS["mcap with chunk index"](tmp_path, sent)
+    assert said_of(evidence_of(specification(["never x > 2"]), bag), bag) == (
+        2,
+        ["NOT COVERED: rosbags reads only 0 of the 2 messages"],
+    )
 
 
 COUNTED = specification(["never once (new b and b) 3 times within 10 s"])

@@ -20,7 +20,7 @@ from ltlc.semantics import ltl
 from ltlc.semantics.encodings import EPISODE, Encoding
 from ltlc.semantics.intervals import without_intervals
 from ltlc.semantics.openings import scope_clocks
-from ltlc.semantics.properties import predicates
+from ltlc.semantics.properties import Property, predicates
 from ltlc.semantics.timed_atoms import (
     Age,
     Clock,
@@ -68,7 +68,7 @@ def stated_atoms(of: PropertySpecification, encoding: Encoding = EPISODE) -> tup
         raise NotCoveredError("an age opens or closes a scope at whose opening it reads a value")
     if encoding is not EPISODE:
         raise NotCoveredError(f"verdicts under the encoding `{encoding.name}` are not proved")
-    if any(map(_changes_by_itself, _before(of))):
+    if asks_between_steps(of.property):
         raise NotCoveredError("it asks what held a nanosecond ago of what changes while nothing happens")
     if len(of.atoms) + len(scopes) > MOST_ATOMS:
         raise NotCoveredError(f"it has more than {MOST_ATOMS} atoms")
@@ -158,10 +158,10 @@ def _type(signal: e.Signal) -> str:
     return names.get(one, numbers) + ("" if one is signal.type else "[]")
 
 
-def _before(of: PropertySpecification) -> Iterator[ltl.Formula]:
-    """What `previously` is asked of."""
-    atoms = (atom for part in predicates(of.property) for atom in atoms_within(part))
-    return (atom.operand for atom in atoms if isinstance(atom, Previously))
+def asks_between_steps(property_: Property) -> bool:
+    """Whether `previously` is asked of what can change while nothing happens."""
+    atoms = (atom for part in predicates(property_) for atom in atoms_within(part))
+    return any(isinstance(atom, Previously) and _changes_by_itself(atom.operand) for atom in atoms)
 
 
 def _changes_by_itself(formula: ltl.Formula) -> bool:

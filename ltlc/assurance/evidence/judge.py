@@ -117,8 +117,8 @@ def whole_part(
     return None if opened is None else (*found, tallies, opened)
 
 
-def judge_part(judging: Judging, standing: Standing, part: Part) -> Standing | None:
-    """What is known after a part; None if it is not judged.
+def judge_alike(judging: Judging, standing: Standing, part: Part) -> Standing | None:
+    """What is known after a part whose instants are all alike to the monitor; None if it is not judged.
 
     Its letter has to be one that the certificate allows; and to lead back to the state that it leads to, so that it
     does not matter how many instants the part has.
@@ -134,6 +134,18 @@ def judge_part(judging: Judging, standing: Standing, part: Part) -> Standing | N
     verdict = monitor.verdicts[state]
     since = standing.since if standing.has_read and verdict is standing.verdict else part.start
     return Standing(True, remembers, tallies, opened, state, verdict, since)
+
+
+def judge_part(judging: Judging, standing: Standing, part: Part) -> Standing | None:
+    """What is known after a part; None if it is not judged.
+
+    If its instants are not alike, they have to have one time, and the later ones, of which there may be none, to change
+    nothing. So a clock may come due at the instant at which it is stopped.
+    """
+    if (alike := judge_alike(judging, standing, part)) is not None or part.start < part.end:
+        return alike
+    first = judge_alike(judging, standing, part._replace(single=True))
+    return first if first is not None and judge_alike(judging, first, part) == first else None
 
 
 def judge_held(judging: Judging, standing: Standing, held: Part, cuts: Sequence[Nanoseconds] = ()) -> Standing | None:
