@@ -6,7 +6,7 @@
 
 Each seed is a random bag that is judged by all forms of properties that evidence covers (`tests/evidencing.py`), with a
 rate or without; `recorded.py`, which shares nothing with ltlc, must find the letters that are written. It is also ten
-random properties, drawn as for `benchmarks.differential`, and four recordings of them in any form: all three checks
+random properties, drawn as for `benchmarks.differential`, and twelve recordings of them in any form: all three checks
 must accept what is written, and refuse it after any single edit, though the digest at the end is set right. What was
 tried is kept in a journal, a line for each seed, so that a campaign that was stopped goes on, up to N property-runs in
 all.
@@ -55,7 +55,7 @@ from ltlc.assurance.evidence.parsing import UnreadableEvidence, parsed
 from ltlc.semantics.verdicts import Verdict
 
 JOURNAL = Path(__file__).parents[1] / "build" / "evidence.jsonl"
-PROPERTIES, RECORDINGS, EDITS = 10, 4, 5
+PROPERTIES, RECORDINGS, EDITS = 10, 12, 5
 """Random properties of a seed, recordings of them, and edits of the evidence of each."""
 
 MESSAGES = 100_000
