@@ -5,7 +5,7 @@ Require Import Ltl Properties Anew Past Relativise Encodings Agreement Clocks Re
   ClockSteps Times OneClock
   Lasso Monitor Conditions Judgements Moves Machines Distribute Certificate Infinite InTime Thresholds
   Program Follows Followed Shown Counts Intervals Held Counting Evidence Instances Diagrams Guard GuardedPlaces
-  GuardCheck GuardInTime Robustness.
+  GuardCheck GuardInTime GuardedNode Robustness.
 
 (** Nothing. *)
 Definition constructive :=
@@ -22,14 +22,14 @@ Definition constructive :=
    @interval_means, @interval_means_not, @open_for, @opened, @episode_opened, @past_part_right, @clock_part_right,
    @next_part_right, @counted_parts_right, @whole_means, @evidence_of_instances, @lines_of_instance, @opened_by_is,
    @guarded_well, @never_at_a_loss, @in_time, @few_are_sent, @time_goes_on, @necessary, @guarded_verdict,
-   @check_guard_sound, @check_guard_of_something, @moves_in_time, @started_clocks_wait, @robustness_right, @looking_back_right,
+   @check_guard_sound, @check_guard_of_something, @moves_in_time, @started_clocks_wait, @node_is_guarded, @robustness_right, @looking_back_right,
    @robustness_near, @looking_back_near, @same_verdict).
 
 (** At most the law of the excluded middle. *)
 Definition classical :=
   (@encode_correct_infinite, @check_sound, @check_exactly, @certified, @certified_exactly, @certified_exactly_in_time,
    @certified_untimed, @certified_exactly_untimed, @shown, @shown_untimed, @shown_exactly_untimed, @evidence_of_lines,
-   @evidence_untimed, @guarded_not_violated, @guarded_in_time, @accepted_guard).
+   @evidence_untimed, @guarded_not_violated, @guarded_in_time, @nothing_is_violated, @accepted_guard).
 
 Print Assumptions constructive.
 Print Assumptions classical.

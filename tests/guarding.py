@@ -233,7 +233,7 @@ class Followed:
         part = self.game.arena.parts[k]
         for letter in letters:
             if isinstance(at, Place):
-                (move,) = part.time.moves(at.reset, (letter,), lambda w, p: w if finite.holds(p, w) else None)
+                (move,) = part.time.moves(at.clocks, (letter,), lambda w, p: w if finite.holds(p, w) else None)
                 at = standing(part, part.monitor.step(at.state, letter), move.target)
         return at
 

@@ -9,7 +9,9 @@ import pytest
 from effort import share_of
 from guarding import MS, Brute, Drawn, Event, Followed, drawn, loaded
 
+import ltlc
 from ltlc.analysis.analyse import study_of
+from ltlc.analysis.errors import NotDecidedError
 from ltlc.analysis.guards.plays import play
 from ltlc.analysis.guards.solution import solve
 from ltlc.analysis.questions import guard_holds_back, guard_passes_nothing, guard_takes_back, uncontrollable
@@ -148,6 +150,47 @@ def test_a_guard_as_people_write_it_has_its_findings(name: str) -> None:
     study = study_of(specification, EPISODE, Budget())
     asked = (guard_passes_nothing, guard_holds_back, guard_takes_back)
     assert {finding.code for question in asked for finding in question.ask(study)} == expected
+
+
+SELDOM = "always (new speed implies not previously once new speed within 20 ms)"
+IN_TIME = "always (min(scan) < 0.5 implies eventually speed <= 0.2 within 100 ms)"
+
+
+@pytest.mark.parametrize("text", [f"p: {SELDOM}\nq: {IN_TIME}", f"p: ({SELDOM}) and ({IN_TIME})"])
+def test_where_a_guard_does_not_know_which_clock_ends_first_it_is_said_that_it_may_be_too_strict(text: str) -> None:
+    specification, _ = loaded(f"{BASE} else stop\n{text}\n")
+    [finding] = guard_holds_back.ask(study_of(specification, EPISODE, Budget()))
+    assert finding.code == HOLDS_BACK
+    assert "speed is more than 0.2" in finding.message
+    assert "may be stricter than it must be" in finding.message
+
+
+def test_what_helps_against_a_guard_that_is_too_strict_is_not_to_limit_its_fallback() -> None:
+    text = f"p: {SELDOM.replace('new speed implies', 'new speed and speed > 0.2 implies')}\nq: {IN_TIME}"
+    specification, _ = loaded(f"{BASE} else stop\n{text}\n")
+    assert not [*guard_holds_back.ask(study_of(specification, EPISODE, Budget()))]
+
+
+BEATS = f"p: {SELDOM}\nq: always age(speed) <= 100 ms"
+
+
+def test_a_guard_that_nothing_passes_since_it_does_not_know_which_clock_ends_first_says_so() -> None:
+    specification, _ = loaded(f"{BASE} else stop\n{BEATS}\n")
+    [finding] = guard_passes_nothing.ask(study_of(specification, EPISODE, Budget()))
+    assert finding.code == PASSES_NOTHING
+    assert "does not know which clock of `p` and `q` ends first" in finding.message
+
+
+def test_what_a_controller_can_keep_is_not_said_to_be_impossible_for_want_of_the_order_of_clocks() -> None:
+    text = f"decl speed /cmd_vel geometry_msgs/Twist.linear.x\n{BEATS}\n"
+    monitor = ltlc.monitor(text)
+    for time in range(0, 1000, 50):
+        monitor.step({"speed": 0.0}, time_ns=time * MS)
+    assert ltlc.Verdict.VIOLATED not in monitor.verdicts.values()
+    specification, _ = loaded(text)
+    study = replace(study_of(specification, EPISODE, Budget()), controls=("/cmd_vel",))
+    with pytest.raises(NotDecidedError, match="any order"):
+        [*uncontrollable.ask(study)]
 
 
 COMMANDS = """decl speed /cmd_vel geometry_msgs/Twist.linear.x

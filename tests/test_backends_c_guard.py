@@ -34,7 +34,6 @@ from ltlc.specification.expressions import Signal
 needs_compiler = pytest.mark.skipif(compiler() is None, reason="no C compiler")
 
 NOT_IN_C = (
-    "rate and near, as one",
     "two guards",
     "lights out",
     *(name for name in EXAMPLES if name.startswith("no faster")),

@@ -17,7 +17,7 @@ from ltlc.assurance.reading.files import written
 from ltlc.assurance.reading.outcomes import Difference, ReadBack
 from ltlc.backends import ros2
 from ltlc.backends.python.load import load_plan
-from ltlc.interfaces.building.guards import NoRegionError, difference
+from ltlc.interfaces.building.guards import difference
 from ltlc.monitoring.guarding import recording
 from ltlc.monitoring.guarding.arrangement import Arrangement
 from ltlc.monitoring.guarding.followed import Followed
@@ -27,11 +27,8 @@ from ltlc.runtime.guarding import Values
 from ltlc.runtime.session import Plan
 from ltlc.runtime.watching import Watching
 
-ORDERED = EXAMPLES["rate and near, as one"].text
-RUN = [name for name, example in EXAMPLES.items() if example.text != ORDERED]
 
-
-@pytest.mark.parametrize("name", RUN)
+@pytest.mark.parametrize("name", EXAMPLES)
 def test_a_program_rests_where_its_region_does_and_nowhere_else(name: str) -> None:
     _, compiled, entries, guards = programs(EXAMPLES[name].text)
     for program, entry in zip(guards, entries, strict=True):
@@ -62,7 +59,7 @@ def mutants(resting: Resting) -> Iterator[Resting]:
         yield replace(resting, conditions=tuple(conditions))
 
 
-@pytest.mark.parametrize("name", RUN)
+@pytest.mark.parametrize("name", EXAMPLES)
 def test_what_a_plan_says_of_a_guard_is_read_back(name: str) -> None:
     specification, compiled, _, guards = programs(EXAMPLES[name].text)
     code = ros2.emit(compiled, specification, guards)
@@ -128,7 +125,7 @@ class _Beside(Followed):
             assert (self.due() or due) <= due
 
 
-@pytest.mark.parametrize("name", RUN)
+@pytest.mark.parametrize("name", EXAMPLES)
 def test_along_a_run_the_program_rests_where_the_region_has_it(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     specification, compiled, _, guards = programs(EXAMPLES[name].text)
     monkeypatch.setattr(_Beside, "plan", load_plan(compiled, specification, guards=guards), raising=False)
@@ -162,8 +159,3 @@ def test_a_program_goes_on_from_a_fork_by_itself() -> None:
         watching.hear(time, "/scan", {"scan": (scan,)})
     assert other.violated == ("p", False)
     assert watching.violated is None
-
-
-def test_a_region_that_needs_the_order_of_clocks_is_refused_by_name() -> None:
-    with pytest.raises(NoRegionError, match="order in which clocks"):
-        programs(ORDERED)

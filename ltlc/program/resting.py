@@ -25,7 +25,6 @@ from ltlc.runtime.guard_plans import NO, YES, Asked, Asks
 from ltlc.semantics.arenas import Arena, Joint, Outcome, Place, Region, Standing
 from ltlc.semantics.diagrams import Diagram, Diagrams, of_predicate
 from ltlc.semantics.monitor import Decision, Target
-from ltlc.semantics.ordered_machine import Timed
 from ltlc.semantics.trackers import State
 from ltlc.specification.atoms import Atom
 from ltlc.specification.evaluation import Value
@@ -43,14 +42,12 @@ class Placed:
     places: Mapping[int, Collection[Place]]
 
     def states(self, at: Standing) -> list[int]:
-        """The states in which the machine can be where the property stands. Raises NotToldError."""
+        """The states in which the machine can be where the property stands."""
         if isinstance(at, Outcome):
             verdicts = enumerate(each.verdict for each in self.machine.states)
             return [state for state, verdict in verdicts if verdict.value == at.value]
-        if isinstance(at.clocks, Timed):
-            raise NotToldError("it depends on the order in which clocks pass their bounds whether it may rest")
         # Whether a clock has just begun, the time tells.
-        return [q for q, of in self.places.items() if (at.state, at.reset.states) in _without_begun(of)]
+        return [q for q, of in self.places.items() if (at.state, at.clocks.states) in _without_begun(of)]
 
 
 class Held(NamedTuple):
@@ -246,4 +243,4 @@ def _part_axis(k: int, machine: Machine) -> _Axis:
 
 
 def _without_begun(places: Collection[Place]) -> set[tuple[int, tuple[State, ...]]]:
-    return {(place.state, place.reset.states) for place in places}
+    return {(place.state, place.clocks.states) for place in places}

@@ -16,7 +16,6 @@ from ltlc.dataclass import dataclass
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.monitor import Monitor
-from ltlc.semantics.ordered_machine import Timed
 from ltlc.semantics.reset_machine import Clocks, ResetMachine
 from ltlc.semantics.verdicts import Verdict
 
@@ -55,22 +54,12 @@ class Part:
         """Which words are runs in time."""
         return ResetMachine(self.formula)
 
-    @property
-    def has_order(self) -> bool:
-        """Whether it has several clocks, so that the order in which they pass their bounds can matter."""
-        return sum(bool(tracker.bounds) for tracker in self.time.trackers) > 1
-
 
 class Place(NamedTuple):
     """Where one property is: the state of its monitor, and its clocks."""
 
     state: int
-    clocks: Clocks | Timed
-
-    @property
-    def reset(self) -> Clocks:
-        """The state of the reset machine."""
-        return self.clocks if isinstance(self.clocks, Clocks) else self.clocks.clocks
+    clocks: Clocks
 
 
 class Outcome(Enum):
@@ -116,6 +105,11 @@ class Arena:
     parts: tuple[Part, ...]
 
     @property
+    def has_several_clocks(self) -> bool:
+        """Whether more than one clock may run: places do not tell which of them passes its bound first."""
+        return sum(bool(tracker.bounds) for part in self.parts for tracker in part.time.trackers) > 1
+
+    @property
     def start(self) -> Joint:
         """Before anything has come."""
         awaited = frozenset[str]().union(*(part.topics for part in self.parts if part.waits)).difference(self.outs)
@@ -151,7 +145,7 @@ class Arena:
         return Outcome.VIOLATED if violated else None
 
 
-def standing(part: Part, state: int, clocks: Clocks | Timed) -> Standing:
+def standing(part: Part, state: int, clocks: Clocks) -> Standing:
     """Where `part` is when its monitor is in `state`."""
     match part.monitor.verdicts[state]:
         case Verdict.VIOLATED:

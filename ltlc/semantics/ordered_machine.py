@@ -52,14 +52,10 @@ class TimedMove(Generic[Letters]):
 
 
 class OrderedMachine:
-    """`machine` with the order of its clocks; to be used as that is.
+    """`machine` with the order of its clocks; to be used as that is."""
 
-    If it is `exact`, a zone stands for itself as long as there are few; otherwise one around it does, where there is.
-    """
-
-    def __init__(self, machine: ResetMachine, *, exact: bool = False) -> None:
+    def __init__(self, machine: ResetMachine) -> None:
         self._machine = machine
-        self._exact = exact
         self._moves: dict[Clocks, list[Move[Any]]] = {}
         self._zones: dict[Clocks, list[Zone]] = {}
         self.trackers = machine.trackers
@@ -72,16 +68,15 @@ class OrderedMachine:
         if state.clocks not in self._moves:
             self._moves[state.clocks] = list(self._machine.moves(state.clocks, letters, narrowed))
         for move in self._moves[state.clocks]:
-            zone = self.after(state, move.cases)
+            zone = self._after(state, move.cases)
             if zone is not None:
                 target = Timed(move.target, self._known(move.target, zone))
                 yield TimedMove(move.letters, target, move.fair, move.cases)
 
     def _known(self, clocks: Clocks, zone: Zone) -> Zone:
-        """`zone`, or one around it that has been seen; where they are many, that of all readings."""
+        """A zone around `zone` that has been seen, or itself; where they are many, that of all readings."""
         zones = self._zones.setdefault(clocks, [])
-        exact = self._exact and len(zones) <= MOST_ZONES
-        found = next((each for each in zones if each == zone or (not exact and is_inside(zone, each))), None)
+        found = next((each for each in zones if is_inside(zone, each)), None)
         if found is None:
             found = zone if len(zones) < MOST_ZONES else self._everything(clocks)
             zones.append(found)
@@ -92,7 +87,7 @@ class OrderedMachine:
         most = [0, *(tracker.bounds[state.passed] + 1 for tracker, state in running)]
         return tuple(tuple(0 if i in (0, j) else most[i] for j in range(len(most))) for i in range(len(most)))
 
-    def after(self, state: Timed, cases: tuple[Case, ...]) -> Zone | None:
+    def _after(self, state: Timed, cases: tuple[Case, ...]) -> Zone | None:
         """The zone after an instant at which the trackers do `cases`; None if no times fit."""
         clocks = (self._clock(k, state.clocks, cases[k]) for k in self._timed)
         return _zone_after(state.zone, tuple(clocks))

@@ -13,7 +13,6 @@ from ltlc.semantics.certificate_text import clocks_in_words, is_name
 from ltlc.semantics.diagrams import Diagram, Diagrams, of_predicate
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.ltl import FALSE, Formula, atoms
-from ltlc.semantics.ordered_machine import Timed
 from ltlc.semantics.reset_machine import Clocks
 from ltlc.semantics.timed_atoms import counts_of
 
@@ -30,12 +29,6 @@ class GuardEntry:
     arena: Arena
     region: Region
     properties: tuple[int, ...]
-
-
-def is_ordered(region: Region) -> bool:
-    """Whether a region rests on the order in which several clocks pass their bounds: then it has no text."""
-    places = (at for joint in region.rests for at in joint.standings if not isinstance(at, Outcome))
-    return any(isinstance(place.clocks, Timed) for place in places)
 
 
 def guard_lines(entry: GuardEntry) -> list[str]:
@@ -129,7 +122,7 @@ class _Writer:
     def _standing(self, at: Standing) -> str:
         if isinstance(at, Outcome):
             return "waits" if at is Outcome.WAITING else "satisfied"
-        clocks = at.reset
+        clocks = at.clocks
         return f"k{self.clocks.setdefault(clocks, len(self.clocks))}.q{at.state}" if clocks.states else f"q{at.state}"
 
     def _acts(self) -> Iterator[str]:

@@ -24,7 +24,6 @@ from ltlc.semantics.arenas import Joint, Outcome, Place
 from ltlc.semantics.diagrams import Diagram, of_predicate
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.ltl import FALSE
-from ltlc.semantics.region_text import is_ordered
 from ltlc.semantics.timed_atoms import Age
 from ltlc.semantics.words import Letter
 from ltlc.specification.arenas import Property, arena_of, conditions_held, is_in_game
@@ -75,8 +74,6 @@ class _View:
         """`parts` are the numbers of its properties there, `names` those of its atoms."""
         self.side, self._game, self._parts, self._names = side, game, parts, names
         self._region = side.reasons.solution.region()
-        if is_ordered(self._region):
-            raise NotDecidedError(f"{side.name} rests on the order in which clocks of a property pass their bounds")
         self._levels = {name: game.atoms.index(other) for name, other in names.items()}
         self._arena = side.reasons.solution.game.arena
         self._resting: dict[Joint, Diagram] = {}
@@ -221,7 +218,7 @@ class Beside:
         """
         outs = self._game.arena.outs
         begun = (at for was, at in zip(before.standings, joint.standings, strict=True) if was is Outcome.WAITING)
-        if any(state.passed for at in begun if isinstance(at, Place) for state in at.reset.states):
+        if any(state.passed for at in begun if isinstance(at, Place) for state in at.clocks.states):
             return False
         pairs = zip(self._game.arena.parts, joint.standings, strict=True)
         waits = [(part.waits, at is Outcome.WAITING) for part, at in pairs if part.waits.isdisjoint(outs)]
@@ -234,7 +231,7 @@ class Beside:
         parts, running = self._game.arena.parts, dict[tuple[int, int], tuple[object, int]]()
         for k, at in ((k, at) for k, at in enumerate(joint.standings) if isinstance(at, Place)):
             for n, tracker in enumerate(parts[k].time.trackers):
-                state = at.reset.states[n]
+                state = at.clocks.states[n]
                 if tracker.bounds and tracker.is_running(state):
                     subject = tracker.subject
                     event = subject.news if isinstance(subject, Age) else (subject, parts[k].waits)

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from functools import reduce
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from ltlc.automata.machine import valuations
 from ltlc.semantics.arenas import Arena, Joint, Outcome, Part, Place, Sending, Sent, Standing, Ticks, standing
 from ltlc.semantics.diagrams import Diagram, Diagrams, of_predicate, rows
 from ltlc.semantics.ltl import Formula
-from ltlc.semantics.ordered_machine import OrderedMachine, Timed
 from ltlc.semantics.reset_machine import Clocks, starts
 from ltlc.semantics.trackers import Case, State, Tracker
 
@@ -41,17 +40,14 @@ class _Own(NamedTuple):
 
 
 class Game:
-    """The moves between the joint places of `arena`; if `ordered`, with the order of the clocks of a property.
+    """The moves between the joint places of `arena`; clocks pass their bounds in any order.
 
     Levels of diagrams are first the atoms that are held, then the news and the timed atoms, which a move decides.
     """
 
-    def __init__(self, arena: Arena, diagrams: Diagrams | None = None, *, ordered: bool = False) -> None:
+    def __init__(self, arena: Arena) -> None:
         self.arena = arena
-        self._machines: list[Any] = [
-            OrderedMachine(p.time, exact=True) if ordered and p.has_order else p.time for p in arena.parts
-        ]
-        self.diagrams = diagrams or Diagrams()
+        self.diagrams = Diagrams()
         decided = (a for p in arena.parts for a in (*p.news, *(a for t in p.time.trackers for a in t.atoms)))
         self.atoms = tuple(arena.read)
         names = dict.fromkeys((*self.atoms, *decided))
@@ -59,7 +55,7 @@ class Game:
         groups = (valuations(self.diagrams, self.atoms, group) for group in arena.alphabet.groups)
         self.possible = self.all_of(groups)
         self._rows = [self._rows_of(part) for part in arena.parts]
-        self._moves: dict[tuple[int, object], list[_Move]] = {}
+        self._moves: dict[tuple[int, Clocks], list[_Move]] = {}
         self._own: dict[tuple[int, Place, str | None], dict[_Own, Diagram]] = {}
         self._steps: dict[tuple[Joint, str | None], Steps] = {}
 
@@ -113,7 +109,7 @@ class Game:
         """What a message on `topic`, or time, does to part k; so much is `sent` before and after it."""
         part, stays = self.arena.parts[k], {_Own(at): self.diagrams.true}
         if at is Outcome.WAITING and topic is not None:
-            first = Place(0, self._machines[k].initial)
+            first = Place(0, part.time.initial)
             ways = self.arena.beginnings(part, before, sent, topic)
             return (self._moved(k, first, topic) if True in ways else {}) | (stays if False in ways else {})
         if isinstance(at, Outcome) or topic not in (None, *part.topics):
@@ -137,7 +133,7 @@ class Game:
             for state in self.diagrams.values(row):
                 here = self.diagrams.combine(lambda holds, to, state=state: holds and to == state, letters, row)
                 if here != self.diagrams.false:
-                    forgets = place.reset.is_first or (topic is not None and topic not in self.arena.outs)
+                    forgets = place.clocks.is_first or (topic is not None and topic not in self.arena.outs)
                     own = _own_step(part, state, move, forgets=forgets)
                     found[own] = self.diagrams.disjunction(found.get(own, self.diagrams.false), here)
         self._own[key] = found
@@ -148,12 +144,12 @@ class Game:
         if (k, place.clocks) in self._moves:
             return self._moves[k, place.clocks]
         part, found = self.arena.parts[k], []
-        for move in self._machines[k].moves(place.clocks, self.diagrams.true, self._narrowed):
+        for move in part.time.moves(place.clocks, self.diagrams.true, self._narrowed):
             holding = {atom for case in move.cases for atom in case.holding}
             decided = {self._levels[a]: a in holding for tracker in part.time.trackers for a in tracker.atoms}
-            changed = zip(part.time.trackers, place.reset.states, move.cases, strict=True)
+            changed = zip(part.time.trackers, place.clocks.states, move.cases, strict=True)
             fresh = (n for n, (t, s, case) in enumerate(changed) if _is_fresh(t, s, case))
-            passing = part.time.passing(place.reset, move.cases)
+            passing = part.time.passing(place.clocks, move.cases)
             ticks = (frozenset((k, n) for n in some) for some in (passing, fresh))
             lasts = part.time.is_trivial or part.time.sets - 1 in move.fair
             found.append(_Move(move.letters, move.target, decided, lasts, *ticks))
@@ -212,7 +208,7 @@ class _Move(NamedTuple):
     """
 
     letters: Diagram
-    target: Clocks | Timed
+    target: Clocks
     decided: dict[int, bool]
     lasts: bool
     passing: Ticks

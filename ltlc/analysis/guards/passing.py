@@ -65,6 +65,11 @@ class Guarded:
             yield Property(subject.specification, subject.formula, monitor)
 
     @property
+    def may_be_strict(self) -> bool:
+        """Whether the game may be lost only because it does not know which of several clocks ends first."""
+        return self.solution.game.arena.has_several_clocks
+
+    @property
     def kept(self) -> tuple[Subject, ...]:
         """The properties that are kept."""
         return tuple(subject for subject in self.subjects if not subject.specification.is_assumed)

@@ -13,7 +13,6 @@ from ltlc.analysis.guards.solution import Solution
 from ltlc.analysis.letters import letters_of
 from ltlc.analysis.thresholds import Values
 from ltlc.dataclass import dataclass
-from ltlc.monitoring.guarding.arrangement import Places
 from ltlc.runtime.plays import Move, Play
 from ltlc.runtime.sampling import Value
 from ltlc.semantics.arenas import Joint
@@ -51,10 +50,6 @@ class Reasons:
     def _setting(self) -> Setting:
         return setting_of(self.conditions, is_known=not self.solution.game.arena.loose)
 
-    @cached_property
-    def _places(self) -> Places:
-        return Places(self.solution.rests)
-
     def __call__(
         self, joint: Joint, letter: Letter, unknown: frozenset[str], values: Mapping[Read, Value]
     ) -> Play | None:
@@ -86,12 +81,11 @@ class Reasons:
     def _found(self, joint: Joint, letter: Letter, unknown: frozenset[str]) -> _Found | None:
         game, d = self.solution.game, self.solution.game.diagrams
         answers = {atom: atom in letter for atom in game.atoms if atom not in unknown}
-        for place in self._places.around(joint):
-            held = letter_of(game, d.negation(self.solution.resting(place)), answers)
-            if held is not None:
-                turns = play(self.solution, place, held)
-                return _Found(held, turns, rows_of(self._setting, word_of(self._setting, held, turns), None))
-        return None
+        held = letter_of(game, d.negation(self.solution.resting(joint)), answers)
+        if held is None:
+            return None
+        turns = play(self.solution, joint, held)
+        return _Found(held, turns, rows_of(self._setting, word_of(self._setting, held, turns), None))
 
 
 def _told(turn: Turn, row: Values) -> dict[str, Value]:

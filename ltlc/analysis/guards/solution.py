@@ -1,7 +1,7 @@
 """Where guards may rest: the greatest region of an arena, as a greatest fixed point on decision diagrams.
 
-Every guard with the same fallbacks that is sure to keep the properties rests nowhere else, as far as letters and the
-order of clocks tell (Coq: `necessary`).
+Every guard with the same fallbacks that is sure to keep the properties rests nowhere else, as far as letters tell, and
+whichever of several clocks passes its bound first (Coq: `necessary`).
 """
 
 from __future__ import annotations
@@ -184,30 +184,13 @@ MOST_PLACES = 20_000
 
 
 def solve(arena: Arena) -> Solution:
-    """The greatest region of `arena`. Raises TooManyPlacesError.
-
-    The order of clocks is taken into account only where it lets more through.
-    """
-    solution = _solved(Game(arena))
-    if not any(part.has_order for part in arena.parts):
-        return solution
-    ordered = _solved(Game(arena, solution.game.diagrams, ordered=True))
-    return ordered if any(_lets_more(ordered, solution, out) for out in arena.outs) else solution
-
-
-def _solved(game: Game) -> Solution:
-    violated = Outcome.VIOLATED
-    rests = {joint: game.diagrams.terminal(game.arena.outcome(joint) is not violated) for joint in reachable(game)}
+    """The greatest region of `arena`. Raises TooManyPlacesError."""
+    game, violated = Game(arena), Outcome.VIOLATED
+    rests = {joint: game.diagrams.terminal(arena.outcome(joint) is not violated) for joint in reachable(game)}
     solution = Solution(game, rests)
     while (narrowed := solution.narrowed()) is not solution:
         solution = narrowed
     return solution
-
-
-def _lets_more(one: Solution, other: Solution, out: str) -> bool:
-    """Whether `one` lets commands through that `other` never does; they share their diagrams."""
-    d = one.game.diagrams
-    return d.conjunction(one.let_through(out), d.negation(other.let_through(out))) != d.false
 
 
 def reachable(game: Game) -> Iterable[Joint]:

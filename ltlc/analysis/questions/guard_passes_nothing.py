@@ -51,6 +51,8 @@ def _nothing(guarded: Guarded, guard: Guard) -> Finding:
     counting = [f"`{subject.label}`" for subject in cause.kept if subject.counts]
     if counting:
         why = f"a guard does not know how often something has occurred, and {listed(counting)} counts"
+    elif cause.may_be_strict:
+        why = f"a guard does not know which clock of {names} ends first, and is ready for any order"
     elif len(cause.kept) > 1:
         why = f"{names} are at odds: what keeps one violates another"
     else:

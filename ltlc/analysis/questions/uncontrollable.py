@@ -28,8 +28,11 @@ def ask(study: Study) -> Iterator[Finding]:
         raise NotDecidedError(f"`{counting.label}` counts")
     if _is_possible(game):
         yield _possible(study, game.kept)
-    else:
-        yield _impossible(study, game.because_of(lambda fewer: not _is_possible(fewer)))
+        return
+    cause = game.because_of(lambda fewer: not _is_possible(fewer))
+    if cause.may_be_strict:
+        raise NotDecidedError(f"{_named(cause.kept)} can be violated if their clocks may end in any order")
+    yield _impossible(study, cause)
 
 
 def _is_possible(game: Guarded) -> bool:

@@ -107,7 +107,9 @@ class _Comparison:
             return [None]
         if isinstance(at, Place):
             near = {(state, place) for state, places in part.places.items() for place in places}
-            return sorted({q for q, place in near if (place.state, place.reset.states) == (at.state, at.reset.states)})
+            return sorted(
+                {q for q, place in near if (place.state, place.clocks.states) == (at.state, at.clocks.states)}
+            )
         return [q for q, state in enumerate(part.machine.states) if state.verdict.value == at.value]
 
     def _exclusive(self) -> Iterator[Diagram]:

@@ -12,7 +12,7 @@ from ltlc.assurance.reading.outcomes import Difference
 from ltlc.compiler import Compiled
 from ltlc.program.guards import GuardProgram, guard_program
 from ltlc.program.resting import NotToldError, Placed
-from ltlc.semantics.region_text import GuardEntry, is_ordered
+from ltlc.semantics.region_text import GuardEntry
 from ltlc.specification.arenas import Property, arena_of, conditions_held, is_in_game, together
 from ltlc.specification.guards import Guard
 from ltlc.specification.specification import Specification
@@ -60,16 +60,10 @@ def difference(program: GuardProgram, entry: GuardEntry, compiled: Sequence[Comp
 
 def _entry(guards: tuple[Guard, ...], specification: Specification, compiled: Sequence[Compiled]) -> GuardEntry:
     arena = arena_of(guards, [Property(each.specification, each.formula, each.monitor) for each in compiled])
-    name = guards[0].out
     try:
         region = solve(arena).region()
     except TooManyPlacesError as error:
-        raise NoRegionError(f"the guard of {name} {error}") from None
-    if is_ordered(region):
-        raise NoRegionError(
-            f"what the guard of {name} lets through rests on the order in which clocks of a property pass their "
-            "bounds, of which certificates do not speak"
-        )
+        raise NoRegionError(f"the guard of {guards[0].out} {error}") from None
     numbers = (number for number, each in enumerate(compiled) if is_in_game(each.specification, guards))
     lines = tuple((specification.source.position(guard.span.start).line, guard.raw, guard.out) for guard in guards)
     return GuardEntry(lines, specification.lead, arena, region, tuple(numbers))

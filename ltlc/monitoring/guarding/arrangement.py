@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from functools import cached_property
 
 from ltlc.dataclass import dataclass
 from ltlc.runtime import sampling
@@ -12,9 +11,8 @@ from ltlc.runtime.sampling import Input, Sampler, Value, Wanted, Window
 from ltlc.runtime.session import Plan
 from ltlc.semantics import finite
 from ltlc.semantics.arenas import Arena, Joint, Part, Place, Region
-from ltlc.semantics.ltl import Formula
-from ltlc.semantics.ordered_machine import OrderedMachine, Timed, is_inside
-from ltlc.semantics.reset_machine import Clocks, ResetMachine
+from ltlc.semantics.ltl import FALSE, Formula
+from ltlc.semantics.reset_machine import Clocks
 from ltlc.semantics.timed_atoms import Clock
 from ltlc.semantics.words import Letter, letters_over
 from ltlc.specification.arrivals import waited_for
@@ -105,7 +103,7 @@ class Arrangement:
         """`properties` are the parts of the arena by their labels."""
         self.arena, self.region, self.find_play = solved.arena, solved.region, solved.find_play
         arena, conditions = solved.arena, solved.conditions
-        self._clocks: dict[tuple[int, Clocks | Timed, Letter], Clocks | Timed] = {}
+        self._clocks: dict[tuple[int, Clocks, Letter], Clocks] = {}
         self._resting: dict[tuple[Joint, Letter, frozenset[str]], bool] = {}
         of_parts = [properties[part.label] for part in arena.parts]
         asked = [_reads_of(atom) for atom in conditions.values()]
@@ -138,69 +136,26 @@ class Arrangement:
             {name: self.asked[name] for name in values if self.asked[name].is_at_opening},
         )
 
-    @cached_property
-    def _places(self) -> Places:
-        """The joint places where guards may rest."""
-        return Places(self.region.rests)
-
-    @cached_property
-    def machines(self) -> list[ResetMachine | OrderedMachine]:
-        """Of each part: that of its clocks, with their order where the region's places have it."""
-        places = (at for joint in self.region.rests for at in joint.standings)
-        is_ordered = any(isinstance(at, Place) and isinstance(at.clocks, Timed) for at in places)
-        return [OrderedMachine(p.time) if is_ordered and p.has_order else p.time for p in self.arena.parts]
-
-    def clocks_after(self, k: int, at: Place, letter: Letter) -> Clocks | Timed:
+    def clocks_after(self, k: int, at: Place, letter: Letter) -> Clocks:
         """The clocks of part k once `letter` has come where it is `at`."""
         key = (k, at.clocks, letter)
         if key not in self._clocks:
-            machine = self.machines[k]
             (move,) = self.arena.parts[k].time.moves(
-                at.reset, letter, lambda held, p: held if finite.holds(p, (held,)) else None
+                at.clocks, letter, lambda held, p: held if finite.holds(p, (held,)) else None
             )
             self._clocks[key] = move.target
-            if isinstance(machine, OrderedMachine) and isinstance(at.clocks, Timed):
-                zone = machine.after(at.clocks, move.cases)
-                assert zone is not None
-                self._clocks[key] = Timed(move.target, zone)
         return self._clocks[key]
 
     def rests(self, joint: Joint, letter: Letter, unknown: frozenset[str]) -> bool:
         """Whether guards may rest at `joint`, where atoms hold as in `letter`, whatever the `unknown` ones are."""
         key = (joint, letter, unknown)
         if key not in self._resting:
-            around = self._places.around(joint)
-            self._resting[key] = any(self._holds_in_all(self.region.rests[o], letter, unknown) for o in around)
+            self._resting[key] = self._holds_in_all(self.region.rests.get(joint, FALSE), letter, unknown)
         return self._resting[key]
 
     def _holds_in_all(self, formula: Formula, letter: Letter, unknown: frozenset[str]) -> bool:
         whole = (letter | some for some in letters_over(sorted(unknown)))
         return all(finite.holds(formula, (each,)) for each in whole if self.arena.alphabet.allows(each))
-
-
-class Places:
-    """Joint places, to be found by what clocks can read there."""
-
-    def __init__(self, joints: Iterable[Joint]) -> None:
-        self._found: dict[Joint, list[Joint]] = {}
-        for joint in joints:
-            self._found.setdefault(_without_order(joint), []).append(joint)
-
-    def around(self, joint: Joint) -> Iterator[Joint]:
-        """Those that are `joint`, but for the order of clocks, and have all that they can read at it."""
-        return (other for other in self._found.get(_without_order(joint), ()) if _is_inside(joint, other))
-
-
-def _without_order(joint: Joint) -> Joint:
-    """`joint` without the order of clocks."""
-    return Joint(joint.sent, tuple(Place(a.state, a.reset) if isinstance(a, Place) else a for a in joint.standings))
-
-
-def _is_inside(joint: Joint, other: Joint) -> bool:
-    """Whether what clocks can read at `joint`, they can at `other`, which is the same without their order."""
-    pairs = zip(joint.standings, other.standings, strict=True)
-    clocks = ((a.clocks, b.clocks) for a, b in pairs if isinstance(a, Place) and isinstance(b, Place))
-    return all(is_inside(a.zone, b.zone) for a, b in clocks if isinstance(a, Timed) and isinstance(b, Timed))
 
 
 def _before_any(read: Read) -> Value:

@@ -158,7 +158,7 @@ class Followed:
             self._answers.update(opened.answers(self._known))
         lacks = self._lacks(plan)
         if begins and not lacks:
-            self._runs[k], at = self._begun(k, plan.part), Place(0, self._of.machines[k].initial)
+            self._runs[k], at = self._begun(k, plan.part), Place(0, plan.part.time.initial)
         run = self._runs[k]
         if run is None or not isinstance(at, Place):
             return at
