@@ -97,6 +97,13 @@ def test_equal_evidence_gives_equal_statements_and_pages() -> None:
 
 
 @pytest.mark.usefixtures("folder")
+def test_a_recording_of_several_files_is_called_as_its_folder(capsys: pytest.CaptureFixture[str]) -> None:
+    certified("--page", "p.html")
+    assert "<h2>drive</h2>" in Path("p.html").read_text()
+    assert "evidence of drive, by ltlc" in capsys.readouterr().out
+
+
+@pytest.mark.usefixtures("folder")
 def test_a_statement_and_a_page_say_which_part_of_a_recording_was_judged() -> None:
     assert main(["run", "props.txt", "drive", "--from", "+0.5", "--until", "+1", "--evidence", "e.evidence", "-q"]) == 1
     assert certified("--statement", "s.jsonl", "--page", "p.html") == 3

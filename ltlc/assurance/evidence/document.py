@@ -112,6 +112,11 @@ class Head:
     until: Nanoseconds | None = None
     signals: tuple[StatedSignal, ...] = ()
 
+    @property
+    def recording(self) -> str:
+        """What the recording is called: its folder, or its only file."""
+        return self.recordings[0].name.partition("/")[0]
+
 
 @dataclass(frozen=True, slots=True)
 class Claim:

@@ -74,7 +74,7 @@ def in_words(condition: Json, elements: Sequence[str] = ()) -> str:
         case {"topic": str(topic), "type": str(type_), "path": [*path], **rest} if not rest:
             return f"{_path(path)} of {topic} ({type_})" if path else f"{topic} ({type_})"
         case {"message": [*topics], **rest} if not rest:
-            return f"a message is on {' or '.join(map(str, topics))}"
+            return f"a message comes on {' or '.join(map(str, topics))}"
         case {"new": [*topics], **rest} if not rest:
             return f"a message with a value comes on {' or '.join(map(str, topics))}"
         case {"ago": ago, "of": samples, **rest} if not rest:

@@ -98,8 +98,7 @@ def _read(document: Document, recordings: Sequence[Path], quiet: bool) -> Read |
 def _report(
     document: Document, objections: Sequence[str], claims: Sequence[CheckedClaim], quiet: bool
 ) -> Iterator[str]:
-    names = ", ".join(file.name for file in document.head.recordings)
-    yield f"evidence of {names}, by ltlc {document.head.version}"
+    yield f"evidence of {document.head.recording}, by ltlc {document.head.version}"
     yield from (f"  {each}" for each in settings_in_words(document.head))
     yield from (f"  REFUSED: {each}" for each in objections)
     for claim in claims:

@@ -68,6 +68,7 @@ def _recording(
 ) -> dict[str, Any]:
     """What is shown of the evidence of one recording."""
     return {
+        "name": document.head.recording,
         "files": document.head.recordings,
         "settings": list(settings_in_words(document.head)),
         "claims": [

@@ -56,7 +56,7 @@ def gaps(matrix: Matrix) -> dict[str, list[str]]:
     if matrix.has_results:
         idle = [each for each in matrix.properties if each.state is State.IDLE]
         told |= {
-            "Never run": [f"{each.label} ({each.place})" for each in matrix.not_run],
+            "Not run": [f"{each.label} ({each.place})" for each in matrix.not_run],
             "Never triggered": [f"{each.label} ({each.place})" for each in idle],
             "Stale: the specification has changed since": [
                 f"{name}: {counted(number, 'recording')}" for name, number in matrix.stale.items()
