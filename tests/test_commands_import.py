@@ -64,6 +64,16 @@ def test_what_is_not_compared_is_undecided(run: Run) -> None:
     assert "# Not shown equal: the bounds are too long to be unrolled." in out
 
 
+def test_where_the_readings_of_a_formula_part_is_printed_and_is_no_finding(run: Run) -> None:
+    code, out, err = run("a.smv", "LTLSPEC G (go -> Y ready)")
+    assert code == 0
+    assert "note[LTL334]: the readings of `1` differ: over signals (`--reading signals`) it would not accept" in err
+    assert "# Over signals (`--reading signals`) it would not accept `({ready}; {go}) for ever`.\n" in out
+    code, out, err = run("a.smv", "LTLSPEC G (go -> Y ready)", "--reading", "signals")
+    assert code == 0
+    assert "at points 1 s apart (`--reading points`) it would also accept `({ready}; {go}) for ever`" in err
+
+
 def test_a_property_that_differs_is_a_finding_with_a_run(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     from ltlc.importing import conversion
     from ltlc.importing.writing import Writer

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import product
 
 import pytest
 from hypothesis import assume, given, settings
@@ -14,6 +15,7 @@ from ltlc.frontend.language import read, types_for
 from ltlc.importing import formulas as f
 from ltlc.importing.conversion import convert
 from ltlc.importing.names import Kind, Signals
+from ltlc.importing.readings import over_signals, parting
 from ltlc.importing.requirement import Requirement
 from ltlc.importing.showing import NotComparedError, compare, of_property
 from ltlc.importing.writing import Reading, UnsayableError, Writer
@@ -149,6 +151,80 @@ def test_only_formulas_that_hold_of_the_same_runs_are_shown_equal(
     if holds(left, run, 0) != holds(right, run, 0):
         assert not shown.is_equal
         assert (shown.formula_only if holds(left, run, 0) else shown.property_only) != ""
+
+
+FINE = 3
+"""So many instants are between a point and the next one, where a run is looked at over signals."""
+
+CHANGING = st.recursive(
+    STATES,
+    lambda inner: st.one_of(
+        st.builds(f.Previous, STATES),
+        st.builds(lambda p, b: f.eventually(p, *b), inner, BOUNDS),
+        st.builds(lambda p, b: f.Since(f.TRUE, p, *b), inner, BOUNDS),
+        st.builds(lambda p, q, b: f.Until(p, q, *b), STATES, STATES, BOUNDS),
+        st.builds(lambda p, q, stop: f.Since(p, q, 0, stop), STATES, STATES, st.sampled_from([None, 0, 2])),
+        st.builds(f.negated, inner),
+        st.builds(f.conjoined, STATES, inner),
+    ),
+    max_leaves=3,
+)
+
+
+def finer(formula: f.Formula) -> f.Formula:
+    """`formula` with its intervals in instants."""
+    match formula:
+        case f.Atom() | f.Truth():
+            return formula
+        case f.Not(operand):
+            return f.Not(finer(operand))
+        case f.And(left, right) | f.Or(left, right):
+            return type(formula)(finer(left), finer(right))
+        case f.Next(operand, steps) | f.Previous(operand, steps):
+            return type(formula)(finer(operand), steps)
+        case f.Until(left, right, start, stop) | f.Since(left, right, start, stop):
+            ends = FINE * start, None if stop is None else FINE * stop
+            return type(formula)(finer(left), finer(right), *ends)
+
+
+def over_instants(formula: f.Formula, word: Word) -> bool:
+    """Whether `formula` holds over the signals that have the values of `word` from each point up to the next one."""
+    return holds(finer(formula), [letter for letter in word for _ in range(FINE)], 0)
+
+
+@settings(max_examples=150, deadline=None, derandomize=True)
+@given(STATES, CHANGING, LETTERS, WORDS)
+def test_what_a_formula_says_over_signals_is_what_it_says_at_all_instants(
+    trigger: f.Formula, formula: f.Formula, first: frozenset[str], word: Word
+) -> None:
+    said = f.always(f.implies(trigger, formula))
+    run = [first, *word, *[word[-1]] * 8]
+    assert holds(over_signals(said), run, 0) == over_instants(said, run)
+
+
+PARTING = {
+    "until": (f.always(f.implies(P, f.Until(Q, R, 2, 4))), "{a, b}; {b}; ({c}) for ever", ""),
+    "an edge": (f.always(f.implies(P, f.Previous(Q))), "({b}; {a}) for ever", ""),
+    "previous": (f.eventually(f.conjoined(P, f.Previous(Q))), "", "{a, b}; ({b}) for ever"),
+}
+
+
+@pytest.mark.parametrize(("formula", "at_points", "signals"), PARTING.values(), ids=list(PARTING))
+def test_a_shortest_run_is_told_on_which_the_readings_part(formula: f.Formula, at_points: str, signals: str) -> None:
+    found = parting(formula, STEP, {}, Alphabet(("a", "b", "c")))
+    assert found == (STEP, at_points, signals)
+    letters = [frozenset(each) for each in ("", "a", "b", "c", "ab", "ac", "bc", "abc")]
+    for length in (1, 2, 3):
+        for word in product(letters, repeat=length):
+            run = [*word, *[word[-1]] * 8]
+            if holds(formula, run, 0) != over_instants(formula, run):
+                assert len(at_points.split(";")) <= length or len(signals.split(";")) <= length
+
+
+@pytest.mark.parametrize("formula", [f.always(f.implies(P, f.eventually(Q, 2, 5))), f.always(f.Since(P, Q))])
+def test_of_most_formulas_the_readings_are_one(formula: f.Formula) -> None:
+    assert parting(formula, STEP, {}, Alphabet(("a", "b", "c"))) is None
+    assert parting(formula, None, {}, Alphabet(("a", "b", "c"))) is None
 
 
 def importing(formula: f.Formula, reading: Reading = POINTS) -> tuple[str, str]:

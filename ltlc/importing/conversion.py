@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from functools import partial
 
 from ltlc.base.diagnostics import Diagnostic, Severity
@@ -12,6 +13,7 @@ from ltlc.dataclass import dataclass
 from ltlc.frontend.language import ReadText, read, types_for
 from ltlc.importing import formulas as f
 from ltlc.importing.names import Signals
+from ltlc.importing.readings import Parting, parting
 from ltlc.importing.requirement import Requirement
 from ltlc.importing.showing import NotComparedError, Shown, compare, of_property
 from ltlc.importing.writing import Reading, UnsayableError, Writer
@@ -24,13 +26,15 @@ from ltlc.specification.specification import PropertySpecification
 class Imported:
     """A requirement with its property, and how that relates to its formula; without a property, why there is none.
 
-    `shown` is None where nothing is shown: `problem` says why, unless the requirement has no formula.
+    `shown` is None where nothing is shown: `problem` says why, unless the requirement has no formula. `parting` has
+    runs on which its formula means something else in the other reading.
     """
 
     requirement: Requirement
     text: str
     shown: Shown | None
     problem: str
+    parting: Parting | None = None
 
 
 def convert(
@@ -48,7 +52,13 @@ def convert(
         jobs = [partial(_compare, trial, loaded, reading.step or 1) for trial in waiting]
         for trial, outcome in zip(waiting, run_all(jobs, budget, watch=watch), strict=True):
             trial.outcomes.append(outcome)
-    return [trial.imported() for trial in trials]
+    said = [trial for trial in trials if trial.properties and trial.requirement.meaning is not None]
+    others = [partial(_parting, trial, loaded, reading.step) for trial in said if trial.requirement.has_readings]
+    found = iter(run_all(others, budget, watch=watch))
+    for trial in said:
+        if trial.requirement.has_readings and not isinstance(outcome := next(found), Exceeded):
+            trial.parting = outcome
+    return [replace(trial.imported(), parting=trial.parting) for trial in trials]
 
 
 class _Trial:
@@ -59,6 +69,7 @@ class _Trial:
         self.properties = [each for each in found if not isinstance(each, str)]
         self.problem = next((each for each in found if isinstance(each, str)), requirement.problem or problem)
         self.outcomes: list[Shown | NotComparedError | Exceeded] = []
+        self.parting: Parting | None = None
 
     @property
     def is_open(self) -> bool:
@@ -156,3 +167,9 @@ def _compare(trial: _Trial, loaded: _Loaded, step: Nanoseconds) -> Shown | NotCo
         return compare(meaning, of_property(property_, step), loaded.states, property_.alphabet)
     except NotComparedError as error:
         return error
+
+
+def _parting(trial: _Trial, loaded: _Loaded, step: Nanoseconds | None) -> Parting | None:
+    """Where the readings of the formula part."""
+    assert trial.requirement.meaning is not None
+    return parting(trial.requirement.meaning, step, loaded.states, trial.properties[0].alphabet)

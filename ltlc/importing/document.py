@@ -40,7 +40,7 @@ def document(imported: Sequence[Imported], signals: Signals, reading: Reading, t
     lines += ["", *declared, *passed]
     labels: dict[str, int] = {}
     for each, written in zip(said, texts, strict=True):
-        lines += ["", *_property(each, written, signals, tool, labels)]
+        lines += ["", *_property(each, written, signals, tool, labels, reading.step)]
     lost = [each for each in imported if not each.text]
     lines += ["", "# Not imported:"] if lost else []
     for each in lost:
@@ -69,13 +69,17 @@ def _named(texts: Sequence[str], signals: Signals) -> tuple[list[str], list[str]
     return list(texts), [f"{name} = {whole}  # there was a tick so many ticks ago" for whole, name in names.items()]
 
 
-def _property(each: Imported, text: str, signals: Signals, tool: str, ids: dict[str, int]) -> Iterator[str]:
+def _property(
+    each: Imported, text: str, signals: Signals, tool: str, ids: dict[str, int], step: int | None
+) -> Iterator[str]:
     """A property, with what is known of it in front."""
     requirement = each.requirement
     yield from (line.replace("#", "##", 1) for line in comment(requirement.text)) if requirement.text else ()
     yield from comment(f"{tool}: {requirement.original}") if requirement.original else ()
     yield from (
-        line for note in (*requirement.notes, *_shown(each, tool)) for line in comment(f"{note[0].upper()}{note[1:]}.")
+        line
+        for note in (*requirement.notes, *_shown(each, tool), *other_reading(each, step))
+        for line in comment(f"{note[0].upper()}{note[1:]}.")
     )
     count = ids[requirement.id] = ids.get(requirement.id, 0) + 1
     name = requirement.id if count == 1 else f"{requirement.id} ({count})"
@@ -83,6 +87,19 @@ def _property(each: Imported, text: str, signals: Signals, tool: str, ids: dict[
     attributes += [f"rationale {_quoted(requirement.rationale)}"] if requirement.rationale else []
     yield f"[{', '.join(attributes)}]"
     yield f"{signals.label(requirement.id)}: {text}"
+
+
+def other_reading(each: Imported, step: int | None) -> Iterator[str]:
+    """What the formula would mean in the other reading, where that is something else; points are a `step` apart."""
+    if (parting := each.parting) is None:
+        return
+    here, there = parting.at_points, parting.over_signals
+    other = "over signals (`--reading signals`)"
+    if step is None:
+        here, there = there, here
+        other = f"at points {duration_text(parting.step)} apart (`--reading points`)"
+    told = [f"would {word} `{run}`" for word, run in (("not accept", here), ("also accept", there)) if run]
+    yield f"{other} it {' and '.join(told)}"
 
 
 def _quoted(text: str) -> str:

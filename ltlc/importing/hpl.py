@@ -92,7 +92,7 @@ def read(source: Source, signals: Signals, measure: Measure) -> list[Requirement
     for number, (text, place, metadata) in enumerate(_properties(source), 1):
         name = metadata.get("id", f"{number}")
         title = " ".join(filter(None, (metadata.get("title"), metadata.get("description"))))
-        requirement = Requirement(name, title, " ".join(text.split()), place)
+        requirement = Requirement(name, title, " ".join(text.split()), place, has_readings=False)
         try:
             found.append(_said(_parsed(text), requirement, fields, measure))
         except FormulaError as error:

@@ -14,7 +14,8 @@ class Requirement:
     `text` is what people read, and `rationale` why; `original` is the formula, or a phrase, at `place`. `meaning`
     is the formula that the property must equal; `forms` are formulas from which it may be written, the first one that
     can be, each of them compared. `said` are properties that are written already. Without any of these, `problem` says
-    why. `notes` are remarks on how it is read.
+    why. `notes` are remarks on how it is read. It `has_readings`, at points and over signals, if it is metric temporal
+    logic.
     """
 
     id: str
@@ -27,6 +28,7 @@ class Requirement:
     problem: str = ""
     notes: tuple[str, ...] = ()
     rationale: str = ""
+    has_readings: bool = True
 
 
 class UnusableFileError(ValueError):

@@ -72,7 +72,8 @@ def _requirement(
         return replace(found, problem="it has no formula")
     if re.match(r"(globally|after\s+[(/~\w].*|until\s+[(/~\w].*):", text):
         (of_hpl,) = hpl.read(Source("", text), signals, measure)
-        kept = {name: getattr(of_hpl, name) for name in ("meaning", "forms", "said", "problem", "notes")}
+        names = ("meaning", "forms", "said", "problem", "notes", "has_readings")
+        kept = {name: getattr(of_hpl, name) for name in names}
         return replace(found, **kept)
     try:
         meaning = parse(text, FORM, signals, measure)

@@ -108,6 +108,7 @@ CODES: dict[str, Code] = {
     "LTL331": Code("not-imported", "A requirement of another tool cannot be imported"),
     "LTL332": Code("import-differs", "An imported property means something else than its formula", WARNING),
     "LTL333": Code("import-not-compared", "An imported property could not be compared with its formula", WARNING),
+    "LTL334": Code("import-readings", "A formula means something else at points than over signals", NOTE),
     "LTL326": Code("unbounded-encoding", "The encoding has no clock for this bound"),
     "LTL401": Code("unknown-setting", "No such setting"),
     "LTL402": Code("setting-out-of-range", "The value of a setting is out of range"),

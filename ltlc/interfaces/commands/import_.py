@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Sequence
-from functools import partial
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from ltlc.automata import Budget, SpotMissing
@@ -14,7 +13,7 @@ from ltlc.base.files import write_text
 from ltlc.base.source import Source, Span
 from ltlc.frontend.language import read_text
 from ltlc.importing.conversion import Imported, convert
-from ltlc.importing.document import document, rate
+from ltlc.importing.document import document, other_reading, rate
 from ltlc.importing.forms import FORMS, FileForm, form_of, measure_of
 from ltlc.importing.names import Signals
 from ltlc.importing.requirement import Requirement, UnusableFileError
@@ -75,12 +74,12 @@ def run(options: argparse.Namespace) -> int:
             imported = convert(requirements, signals, reading, Budget(*options.budget), watch)
     except SpotMissing as error:
         return unusable(str(error))
-    findings = list(filter(None, map(partial(_finding, source), imported)))
+    findings = [each for of in imported for each in _findings(source, of, step)]
     report(findings)
     text = document(imported, signals, reading, form.name, options.file.name)
     if (code := _write(text, options.output, options.quiet)) != OK:
         return code
-    codes = {each.code for each in findings}
+    codes = {each.code for each in findings} - {"LTL334"}
     return FINDING if codes & {"LTL331", "LTL332"} else UNDECIDED if codes else OK
 
 
@@ -95,6 +94,15 @@ def read(source: Source, form: FileForm, signals: Signals, reading: Reading) -> 
     if not found:
         raise UnusableFileError("there is nothing in it to import")
     return found
+
+
+def _findings(source: Source, each: Imported, step: int | None) -> Iterator[Diagnostic]:
+    """What is to be said about a requirement; its points are a `step` apart."""
+    if (found := _finding(source, each)) is not None:
+        yield found
+    for other in other_reading(each, step):
+        message = f"the readings of `{each.requirement.id}` differ: {other}"
+        yield diagnostic("LTL334", source, each.requirement.place, message)
 
 
 def _finding(source: Source, each: Imported) -> Diagnostic | None:
