@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from itertools import product
 
 import pytest
@@ -239,6 +239,12 @@ def importing(formula: f.Formula, reading: Reading = POINTS) -> tuple[str, str]:
 
 EDGE = f.And(P, f.Not(f.Previous(P)))
 
+
+def after(opening: f.Formula, body: f.Formula) -> f.Formula:
+    """`body` from the first position with `opening` on."""
+    return f.Or(f.Until(f.Not(opening), f.And(opening, body)), f.Not(f.eventually(opening)))
+
+
 SAID = {
     "always a": f.always(P),
     "never (a and b)": f.always(f.Not(f.And(P, Q))),
@@ -252,6 +258,9 @@ SAID = {
     "after @{a or not a, -3 else false}, never a": f.always(f.Not(P), 3),
     "after a, never b": f.Or(f.Until(f.Not(P), f.And(P, f.always(f.Not(Q)))), f.Not(f.eventually(P))),
     "initially a": P,
+    "after c, always (once @{c, -1 else false} and @{a, -1 else false} implies b)": after(
+        R, f.always(f.implies(P, f.Next(Q)))
+    ),
     "eventually b within [2 s, 5 s]": f.eventually(Q, 2, 5),
     "always (a since b within 4 s)": f.always(f.Since(P, Q, 0, 4)),
 }
@@ -263,6 +272,24 @@ def test_a_formula_is_said_in_idiomatic_words_and_shown_equal(text: str, formula
     assert Writer(POINTS, mark).property(formula) == text
     if "20" not in text:
         assert importing(formula)[1] == "equal"
+
+
+INSIDE = {
+    "next": f.Next(Q),
+    "eventually, later": f.eventually(Q, 2),
+    "never, later": f.always(f.Not(Q), 2),
+    "a response to what was": f.always(f.implies(P, f.eventually(Q, 1, 3))),
+    "another after": after(P, f.always(f.implies(Q, f.Next(f.Not(Q))))),
+    "next in a conjunction": f.And(f.always(f.implies(P, f.Next(Q))), f.Next(f.always(f.Not(R)), 2)),
+}
+
+
+@pytest.mark.parametrize("body", INSIDE.values(), ids=list(INSIDE))
+@pytest.mark.parametrize("scope", [lambda body: after(R, body), f.Next], ids=["after", "next"])
+def test_inside_a_scope_what_looks_ahead_does_not_look_back_before_it(
+    scope: Callable[[f.Formula], f.Formula], body: f.Formula
+) -> None:
+    assert importing(scope(body))[1] == "equal"
 
 
 UNEQUAL = {

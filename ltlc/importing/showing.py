@@ -7,7 +7,7 @@ then only equality can be shown. What the past has at a position is an atom with
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
+from dataclasses import field, replace
 from typing import assert_never
 
 from ltlc.analysis.comparison.reference import shown
@@ -41,8 +41,11 @@ def of_property(property_: PropertySpecification, step: Nanoseconds) -> f.Formul
 
 @dataclass(frozen=True)
 class _Reader:
+    """Reads the parts of a property; those that `is_first` says are judged at the first position only."""
+
     specification: PropertySpecification
     step: Nanoseconds
+    is_first: bool = True
 
     def property(self, of: properties.Property) -> f.Formula:
         if not _is_bounded(of) and not isinstance(of, properties.After):
@@ -61,16 +64,16 @@ class _Reader:
             case properties.Implies(left, right):
                 return f.implies(self.property(left), self.property(right))
             case properties.Always(operand):
-                return f.always(self.property(operand))
+                return f.always(self._later(operand))
             case properties.Never(operand):
-                return f.Not(f.eventually(self.property(operand)))
+                return f.Not(f.eventually(self._later(operand)))
             case properties.Eventually(operand):
-                return f.eventually(self.property(operand))
+                return f.eventually(self._later(operand))
             case properties.After(event, body):
                 opened = self.formula(event)
-                if isinstance(opened, f.Previous) and opened.operand == f.TRUE:
-                    return f.Next(self.property(body), opened.steps)
-                return f.weak_until(f.negated(opened), f.And(opened, self.property(body)))
+                if self.is_first and isinstance(opened, f.Previous) and opened.operand == f.TRUE:
+                    return f.Next(self._later(body), opened.steps)
+                return f.weak_until(f.negated(opened), f.And(opened, self._later(body)))
             case properties.Within(duration, body, start):
                 return self._within(body, self._steps(start), self._steps(duration))
             case properties.Until(event, properties.Always(properties.Now(kept)) | properties.Throughout(kept)):
@@ -79,6 +82,9 @@ class _Reader:
                 raise NotComparedError("a bound inside a scope is not compared")
             case _:
                 assert_never(of)
+
+    def _later(self, of: properties.Property) -> f.Formula:
+        return replace(self, is_first=False).property(of)
 
     def _within(self, body: properties.Property, start: int, stop: int) -> f.Formula:
         match body:

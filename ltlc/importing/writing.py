@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from dataclasses import replace
 from typing import assert_never
 
 from ltlc.dataclass import dataclass
@@ -38,10 +39,15 @@ _Text = tuple[str, int]
 
 @dataclass(frozen=True)
 class Writer:
-    """Writes formulas, read as `reading` says. `mark` is a condition of which only matters that it has a value."""
+    """Writes formulas, read as `reading` says. `mark` is a condition of which only matters that it has a value.
+
+    Inside `after`, the run that a formula is about has `began` at some position: what is asked of earlier ones is asked
+    of those since then.
+    """
 
     reading: Reading
     mark: str
+    began: f.Formula = f.TRUE
 
     def property(self, formula: f.Formula) -> str:
         """A property that holds of a run if `formula` holds at its first position. Raises UnsayableError."""
@@ -67,13 +73,16 @@ class Writer:
             case f.Or(f.Until(f.Not(e), f.And(again, then), 0, None), never) if (
                 e == again and f.is_state(e) and never == f.Not(f.eventually(e))
             ):
-                return f"after {self._state(e)}, {self.property(then)}"
+                inside = replace(self, began=f.Since(f.TRUE, f.conjoined(self.began, e)))
+                return f"after {self._state(e)}, {inside.property(then)}"
             case f.Or(f.Not(left), right):
                 return f"({self.property(left)}) implies ({self.property(right)})"
             case f.Or(left, right):
                 return f"({self.property(left)}) or ({self.property(right)})"
+            case f.Next(f.Next(operand, more), steps):
+                return self.property(f.Next(operand, steps + more))
             case f.Next(operand, steps):
-                return f"after {self._was(f.TRUE, steps)}, {self.property(operand)}"
+                return self._later(steps, lambda inside: inside.property(operand))
             case f.Until(left, right, start, stop):
                 return self._until(left, right, start, stop)
             case _:
@@ -97,14 +106,15 @@ class Writer:
 
     def _eventually(self, operand: f.Formula, start: int, stop: int | None) -> str:
         if stop is None:
-            rest = f"eventually {self._body(operand)}"
-            return rest if not start else f"after {self._was(f.TRUE, start)}, {rest}"
+            if start:
+                return self._later(start, lambda inside: inside._eventually(operand, 0, None))
+            return f"eventually {self._body(operand)}"
         operand, more = self._decided(operand)
         return f"eventually {self._state(operand, _UNARY)} within {self._interval(start + more, stop + more)}"
 
     def _always(self, operand: f.Formula, start: int, stop: int | None) -> str:
         if stop is not None and not f.is_state(operand):
-            first = f.Not(f.Previous(f.TRUE))
+            first = f.conjoined(self.began, f.negated(f.earlier(self.began, 1)))
             given: f.Formula = f.Since(f.TRUE, first, 0, stop)
             if start:
                 given = f.And(given, f.Not(f.Since(f.TRUE, first, 0, start - 1)))
@@ -119,7 +129,7 @@ class Writer:
                 )
             return f"always {self._state(operand, _UNARY)} for {self._interval(start + more, stop + more)}"
         if start:
-            operand = f.disjoined(f.negated(f.Previous(f.TRUE, start)), operand)
+            operand = f.disjoined(f.negated(f.earlier(self.began, start)), operand)
         clauses = list(_clauses(operand))
         texts = [self._clause(clause) for clause in clauses]
         return texts[0] if len(texts) == 1 else " and ".join(f"({text})" for text in texts)
@@ -168,9 +178,7 @@ class Writer:
         if start == stop:
             then = operand if keyword == "eventually" else f.negated(operand)
             return self._clause(f.implies(self._shifted(given, start), then))
-        if start and given == f.TRUE:
-            given = f.Previous(f.TRUE, start)
-        elif start:
+        if start:
             given = self._shifted(given, start)
         body = f"{keyword} {self._state(operand, _UNARY)} within {self._interval(0, stop - start)}"
         if keyword == "never" and isinstance(operand, f.Not):
@@ -180,12 +188,17 @@ class Writer:
         return f"always ({self._state(given, _OR)} implies {body})"
 
     def _shifted(self, given: f.Formula, steps: int) -> f.Formula:
-        """`given`, so many steps ago. Raises UnsayableError."""
+        """`given`, so many steps ago, when the run had begun. Raises UnsayableError."""
         if not steps:
             return given
         if self.reading.step is None:
             raise UnsayableError(NO_CLOCK)
-        return f.earlier(given, steps)
+        return f.earlier(f.conjoined(self.began, given), steps)
+
+    def _later(self, steps: int, rest: Callable[[Writer], str]) -> str:
+        """The `rest`, so many positions after the beginning."""
+        began = f.earlier(self.began, steps)
+        return f"after {self._state(began)}, {rest(replace(self, began=began))}"
 
     def _decided(self, operand: f.Formula) -> tuple[f.Formula, int]:
         """`operand` as the positions up to a later one decide it, and by how many that is later."""
@@ -203,7 +216,9 @@ class Writer:
         """Always `clause`, reported once it is decided."""
         if f.horizon(clause) is None or self.reading.step is None:
             return f"always ({self._body(clause)})"
-        violated, _ = self._decided(f.negated(clause))
+        violated, more = self._decided(f.negated(clause))
+        if self.began != f.TRUE:
+            violated = f.conjoined(f.earlier(self.began, more), violated)
         return self._clause(f.negated(violated))
 
     def _body(self, formula: f.Formula) -> str:
