@@ -52,12 +52,11 @@ def convert(
         jobs = [partial(_compare, trial, loaded, reading.step or 1) for trial in waiting]
         for trial, outcome in zip(waiting, run_all(jobs, budget, watch=watch), strict=True):
             trial.outcomes.append(outcome)
-    said = [trial for trial in trials if trial.properties and trial.requirement.meaning is not None]
-    others = [partial(_parting, trial, loaded, reading.step) for trial in said if trial.requirement.has_readings]
-    found = iter(run_all(others, budget, watch=watch))
-    for trial in said:
-        if trial.requirement.has_readings and not isinstance(outcome := next(found), Exceeded):
-            trial.parting = outcome
+    metric = [trial for trial in trials if trial.properties and trial.requirement.has_readings]
+    readings = [partial(_parting, trial, loaded, reading.step) for trial in metric]
+    for trial, where in zip(metric, run_all(readings, budget, watch=watch), strict=True):
+        if not isinstance(where, Exceeded):
+            trial.parting = where
     return [replace(trial.imported(), parting=trial.parting) for trial in trials]
 
 
@@ -170,6 +169,6 @@ def _compare(trial: _Trial, loaded: _Loaded, step: Nanoseconds) -> Shown | NotCo
 
 
 def _parting(trial: _Trial, loaded: _Loaded, step: Nanoseconds | None) -> Parting | None:
-    """Where the readings of the formula part."""
-    assert trial.requirement.meaning is not None
-    return parting(trial.requirement.meaning, step, loaded.states, trial.properties[0].alphabet)
+    """Where the readings of the formula part, if there is one."""
+    meaning = trial.requirement.meaning
+    return None if meaning is None else parting(meaning, step, loaded.states, trial.properties[0].alphabet)
