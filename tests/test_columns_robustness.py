@@ -19,10 +19,10 @@ from ltlc.base.source import Source
 from ltlc.frontend.language import load_text
 from ltlc.inputs.recordings.rows import Row
 from ltlc.monitoring.columns import extremes, timeline
-from ltlc.monitoring.columns.measuring import Curve, Measuring
+from ltlc.monitoring.columns.measuring import Band, Curve, Measuring
 from ltlc.monitoring.columns.past import Predicates
 from ltlc.monitoring.columns.prepared import prepare_all
-from ltlc.monitoring.columns.robustness import Robustness, at_steps
+from ltlc.monitoring.columns.robustness import Robustness, at_steps, still_possible
 from ltlc.monitoring.columns.series import UnsupportedError
 from ltlc.monitoring.columns.session import ByBlocks
 from ltlc.monitoring.columns.timeline import Timeline
@@ -33,7 +33,7 @@ from ltlc.runtime.session import Session
 from ltlc.runtime.tracking import Observer, Track
 from ltlc.semantics import ltl
 from ltlc.semantics.properties import predicates
-from ltlc.semantics.robustness import held, margin, robustness, with_past
+from ltlc.semantics.robustness import Measured, held, margin, robustness, with_past
 from ltlc.semantics.timed_atoms import News, atoms_within
 from ltlc.semantics.verdicts import Verdict
 from ltlc.specification.margins import by_how_much
@@ -65,6 +65,42 @@ def test_columns_have_the_robustness_of_the_definition_at_every_step(
     assert of_steps.tolist() == [expected[k] for k in line.steps.tolist()]
 
 
+def continued(chance: Random, steps: Sequence[Measured], until: int, later: Sequence[Measured]) -> list[Measured]:
+    """`steps` up to `until`, and some more, of which some have `later` margins and some larger ones."""
+    names = steps[0].margins
+    more, time = [], until
+    for step in [*later, *chance.choices(steps, k=2)]:
+        time += chance.choice((0, 1, 1, 2, 5))
+        sizes = {name: chance.choice((0.25, 4.0, math.inf)) for name in names}
+        drawn = {
+            name: chance.choice((-1, 1)) * (math.inf if math.isinf(steps[0].margins[name]) else sizes[name])
+            for name in names
+        }
+        more.append(Measured(time, chance.choice((step.margins, drawn))))
+    return [*steps, *more[: chance.randrange(len(more) + 1)]]
+
+
+@pytest.mark.parametrize("seed", range(share_of(600)))
+def test_what_is_still_possible_contains_the_robustness_of_every_continuation(seed: int) -> None:
+    property_, steps, until, past, seen = measured_run(seed)
+    chance = Random(seed)
+    news = {each.name for part in predicates(property_) for each in atoms_within(part) if isinstance(each, News)}
+    count = chance.randrange(1, len(steps) + 1)
+    now = steps[count].time if count < len(steps) else until
+    line = Timeline(np.array([step.time for step in steps[:count]]), now)
+    margins = {name: np.array([step.margins[name] for step in steps[:count]]) for name in steps[0].margins}
+    try:
+        low, high = still_possible(property_, line, margins, dict.fromkeys(news, seen.session))
+    except UnsupportedError:
+        assert "Within(" in repr(property_)
+        return
+    for _ in range(30):
+        longer = continued(chance, steps[:count], now, steps[count:])
+        end = max(now, longer[-1].time) + chance.randrange(4)
+        run = with_past(held(longer, end, news), past, seen.session)
+        assert low <= robustness(run, property_) <= high
+
+
 class Captured:
     """Takes the place of letters: the values of a property's inputs at each of its steps."""
 
@@ -80,11 +116,11 @@ class Captured:
     def hear(self, *_: Any) -> None: ...
 
     def repeat(self, times: int) -> None:
-        self.steps += [self.steps[-1]] * times
+        self.steps += self.steps[-1:] * times
 
 
-def measured(drawn: Drawn) -> tuple[dict[str, Curve], dict[str, Captured], Session, Any]:
-    """The curves of what is drawn, the values that rows see, and the session of the rows."""
+def measured(drawn: Drawn) -> tuple[dict[str, Curve], dict[str, Captured], Session, Any, dict[str, Band]]:
+    """The curves of what is drawn, the values that rows see, the session of the rows, and what is still possible."""
     compiled, specification = from_text(drawn.text)
     given = {name for part in drawn.parts for row in part for name in row.values} | set(KINDS) | {"v", "w"}
     given -= set(PARTS) - {"robot.position.x"}
@@ -103,14 +139,15 @@ def measured(drawn: Drawn) -> tuple[dict[str, Curve], dict[str, Captured], Sessi
             reference.samples(time, names, values, topics)
         measuring.take(block)
         fast.take(block)
-    return measuring.curves(fast.session.time), captured, reference.session, compiled
+    end = fast.session.time
+    return measuring.curves(end), captured, reference.session, compiled, measuring.bands(end or 0)
 
 
 @pytest.mark.parametrize("seed", range(share_of(120)))
 def test_curves_begin_with_a_margin_whose_sign_is_the_verdict(seed: int) -> None:
     drawn = Draw(Random(seed)).drawn()
     with sizes(Random(seed)):
-        curves, captured, session, _ = measured(drawn)
+        curves, captured, session, *_ = measured(drawn)
     for track in session.tracks:
         curve = curves[track.property.label]
         if curve.reason:
@@ -125,12 +162,27 @@ def test_curves_begin_with_a_margin_whose_sign_is_the_verdict(seed: int) -> None
 
 
 @pytest.mark.parametrize("seed", range(share_of(120)))
+def test_what_is_still_possible_has_one_sign_only_if_the_verdict_is_permanent(seed: int) -> None:
+    drawn = Draw(Random(seed)).drawn()
+    with sizes(Random(seed)):
+        curves, _, session, _, bands = measured(drawn)
+    for track in session.tracks:
+        curve, band = curves[track.property.label], bands[track.property.label]
+        assert band.reason == curve.reason
+        assert band.low <= (curve.whole or 0) <= band.high or curve.whole is None
+        if band.low > 0:
+            assert track.verdict is Verdict.SATISFIED, drawn.text
+        if band.high < 0:
+            assert track.verdict is Verdict.VIOLATED, drawn.text
+
+
+@pytest.mark.parametrize("seed", range(share_of(120)))
 def test_the_margins_of_conditions_are_those_of_the_reference(seed: int) -> None:
     draw = Draw(Random(seed))
     lines = [line for line in (f"initially ({draw._atom()})" for _ in range(8)) if is_accepted(line)]
     text = DECLARATIONS + "".join(f"p{number}: {line}\n" for number, line in enumerate(lines))
     with sizes(Random(seed)):
-        curves, captured, _, compiled = measured(Drawn(text, draw._cut(draw._rows())))
+        curves, captured, _, compiled, _ = measured(Drawn(text, draw._cut(draw._rows())))
     for each in compiled:
         of = each.specification
         curve, steps = curves[of.label], captured[of.label].steps

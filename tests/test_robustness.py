@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import json
+import math
 import zlib
 from pathlib import Path
 
@@ -13,6 +14,7 @@ from stepping import from_text
 
 import ltlc
 from ltlc.cli import main
+from ltlc.interfaces.api.monitor import LiveRun
 from ltlc.interfaces.pages.report import PageReport
 from ltlc.monitoring.judging.run import Judge
 
@@ -131,3 +133,54 @@ def test_a_run_that_was_stepped_cannot_be_measured() -> None:
     monitor.step({"robot.velocity": 1.0}, time=0.0)
     with pytest.raises(ltlc.UnusableInput, match="to measure them"):
         _ = monitor.finish().robustness
+
+
+LIVE = """
+decl speed /speed std_msgs/Float64.data
+decl armed /armed std_msgs/Bool.data
+decl count /count std_msgs/Int32.data
+
+slow:  never speed > 2
+soon:  eventually speed > 1 within 2 s
+later: eventually speed > 1 within [1 s, 2 s]
+first: until armed, always speed < 1
+each_: each n of count: never speed > n
+"""
+
+
+def possible(live: LiveRun) -> dict[str, tuple[float, float]]:
+    return {label: (band.low, band.high) for label, band in live.robustness.items() if not band.reason}
+
+
+def test_a_run_that_goes_on_has_what_its_robustness_can_still_be() -> None:
+    live = ltlc.monitor(LIVE, robustness=True)
+    anything = -math.inf, math.inf
+    assert set(possible(live).values()) == {anything}
+    live.step({"speed": 0.5, "armed": False, "count": 1}, time=0)
+    assert possible(live) == {
+        "slow": (-math.inf, 1.5),
+        "soon": (-0.5, math.inf),
+        "later": anything,
+        "first": (-math.inf, 0.5),
+    }
+    live.step({"speed": 0.75}, time=1.5)
+    assert possible(live)["later"] == (-0.25, math.inf)
+    live.step({}, time=2)  # at which another message may come
+    assert possible(live)["soon"] == (-0.25, math.inf)
+    live.step({"armed": True}, time=2.5)
+    assert possible(live) == {
+        "slow": (-math.inf, 1.25),
+        "soon": (-0.25, -0.25),
+        "later": (-0.25, -0.25),
+        "first": (0.25, 0.25),
+    }
+    live.finish()
+    assert possible(live)["slow"] == (1.25, 1.25)
+    assert live.robustness["each_"].reason == "`each`: every id or message has a run of its own"
+    live.reset()
+    assert possible(live)["slow"] == anything
+
+
+def test_nothing_is_kept_of_a_run_whose_robustness_was_not_asked_for() -> None:
+    with pytest.raises(ltlc.UnusableInput, match="`robustness=True`"):
+        assert ltlc.monitor(LIVE).robustness

@@ -6,14 +6,14 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from operator import index
 from os import PathLike
 from pathlib import Path
-from typing import SupportsIndex
+from typing import TYPE_CHECKING, SupportsIndex
 
 from ltlc.base.errors import UnusableInput
 from ltlc.base.limits import Budget
 from ltlc.dataclass import dataclass
 from ltlc.inputs.recordings.checks import checks_of
 from ltlc.inputs.recordings.given import DOUBLE, TIME, GivenTable, cells, time_given
-from ltlc.inputs.recordings.rows import RecordingError
+from ltlc.inputs.recordings.rows import Column, RecordingError
 from ltlc.inputs.recordings.signals import FromTable
 from ltlc.interfaces.api.prepare import Prepared, Text, encoding_of, prepare, read
 from ltlc.interfaces.api.results import PropertyResult, Run, violations_of
@@ -28,6 +28,10 @@ from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.verdicts import Verdict
 from ltlc.specification.expressions import Signal
 
+if TYPE_CHECKING:
+    from ltlc.monitoring.columns.bands import Bands
+    from ltlc.monitoring.columns.measuring import Band
+
 NAME = Path("run")
 """What is called a run that is in no file."""
 
@@ -39,6 +43,7 @@ def monitor(
     encoding: str = "episode",
     message_paths: Sequence[str | PathLike[str]] = (),
     budget: Budget | None = None,
+    robustness: bool = False,
 ) -> LiveRun:
     """A run that the properties of `specification` watch, before its first row.
 
@@ -61,10 +66,11 @@ def monitor(
     At +1.1 s (after step 1).
 
     A `str` is the text of a specification, a `pathlib.Path` a file; otherwise as `LiveRun`. `budget` is what the
-    translation of each property may use. Raises UnusableInput and SpotMissing.
+    translation of each property may use. With `robustness` the run keeps what `LiveRun.robustness` needs. Raises
+    UnusableInput and SpotMissing.
     """
     encoding_, budget_ = encoding_of(encoding), budget or Budget()
-    return LiveRun(prepare(read(specification), message_paths, encoding_, budget_), signals)
+    return LiveRun(prepare(read(specification), message_paths, encoding_, budget_), signals, robustness)
 
 
 class LiveRun:
@@ -75,8 +81,9 @@ class LiveRun:
     `signals` says it before. Where the time matters, each row has one; else rows without are taken to be 1 s apart.
     """
 
-    def __init__(self, prepared: Prepared, signals: Iterable[str] | None = None) -> None:
+    def __init__(self, prepared: Prepared, signals: Iterable[str] | None = None, is_measured: bool = False) -> None:
         self._prepared = prepared
+        self._is_measured = is_measured
         self._judge = Judge(prepared.compiled, prepared.specification, remarks=prepared.late)
         if isinstance(signals, str):
             raise UnusableInput((), f"`signals` must be a list of names: `[{signals!r}]`")
@@ -87,6 +94,7 @@ class LiveRun:
     def reset(self) -> None:
         """Begin again, before the first row."""
         self._by_rows: ByRows | None = None
+        self._bands: Bands | None = None
         self._run: Run | None = None
         self._columns: Collection[str] = ()
         self._heads: dict[str, None] = {}
@@ -142,6 +150,8 @@ class LiveRun:
             raise
         self._rows, self._time = number, moment
         assert self._by_rows is not None
+        if self._bands is not None:
+            self._bands.take(moment, route.names, taken)
         return self._by_rows.follow(moment, route, taken)
 
     @property
@@ -150,6 +160,21 @@ class LiveRun:
         if self._by_rows is None:
             return {each.specification.label: Verdict.NOT_STARTED for each in self._prepared.compiled}
         return {track.property.label: track.verdict for track in self._by_rows.tracks}
+
+    @property
+    def robustness(self) -> dict[str, Band]:
+        """Between which numbers the robustness of each property will be, by its label, however the run continues.
+
+        After `finish` it is a number. It takes time in proportion to the steps so far, of which 8 bytes are kept for
+        each comparison. Raises UnusableInput unless the run was begun with `robustness=True`.
+        """
+        if not self._is_measured:
+            raise UnusableInput((), "nothing is kept for it; call `ltlc.monitor` with `robustness=True`")
+        if self._bands is None or self._time is None:
+            from ltlc.monitoring.columns.measuring import Band  # which few ask for
+
+            return {each.specification.label: Band() for each in self._prepared.compiled}
+        return self._bands.now(self._time, self._run is not None)
 
     @property
     def violations(self) -> list[PropertyResult]:
@@ -224,6 +249,12 @@ class LiveRun:
         untold = {signal.name for signal in signals if not any(name in columns for name in _family(signal))}
         session = Session(self._judge.plan({*columns, *untold}))
         session.times = Times.BOTH
+        if self._is_measured:
+            from ltlc.monitoring.columns.bands import Bands  # which few ask for
+
+            read = {name: self._judge.signals[name] for name in readings(session.plan)}
+            kinds = {name: Column(signal.type, signal.numbers) for name, signal in read.items()}
+            self._bands = Bands(session.plan, self._prepared.compiled, self._judge.prepared, kinds)
         return ByRows(session)
 
 

@@ -28,10 +28,10 @@ def empty(extreme: np.ufunc) -> float:
     return TRUE if extreme is np.minimum else FALSE
 
 
-def extremes_from(extreme: np.ufunc, margins: Array) -> Array:
-    """The least or greatest from each margin on: that of what comes after a block, throughout most blocks."""
+def extremes_from(extreme: np.ufunc, margins: Array, last: float) -> Array:
+    """The least or greatest from each margin on, with `last`: that of what comes after a block, in most blocks."""
     of_blocks = extreme.reduceat(margins, np.arange(0, len(margins), BLOCK))
-    after = extreme.accumulate(np.append(of_blocks[1:], empty(extreme))[::-1])[::-1]
+    after = extreme.accumulate(np.append(of_blocks[1:], last)[::-1])[::-1]
     found: Array = np.repeat(after, BLOCK)[: len(margins)]
     for number in np.flatnonzero(extreme(of_blocks, after) != after).tolist():
         block = slice(number * BLOCK, (number + 1) * BLOCK)
@@ -119,7 +119,7 @@ def _backwards(clamps: Clamps, last: float, found: Array) -> None:
     found[:whole].reshape(lanes, LANE)[:] = low.T
 
 
-def over_windows(clamps: Clamps, firsts: Places, ends: Places, last: float) -> Array:
+def over_windows(clamps: Clamps, firsts: Places, ends: Places, last: Array | float) -> Array:
     """What the clamps of the pieces from each of `firsts` to before its end make of `last`, that at the first last."""
     found = Clamps(np.full(len(firsts), FALSE), np.full(len(firsts), TRUE))
     at, rest, level = firsts.copy(), ends - firsts, 0

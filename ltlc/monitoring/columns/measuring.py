@@ -15,7 +15,7 @@ from ltlc.inputs.recordings.blocks import Array, Block, Places
 from ltlc.monitoring.columns.derived import derive
 from ltlc.monitoring.columns.margins import margins_of
 from ltlc.monitoring.columns.prepared import Prepared
-from ltlc.monitoring.columns.robustness import at_steps
+from ltlc.monitoring.columns.robustness import at_steps, still_possible
 from ltlc.monitoring.columns.series import Columns, Steps, UnsupportedError
 from ltlc.monitoring.columns.timeline import Timeline
 from ltlc.monitoring.columns.values import not_numbers
@@ -24,6 +24,9 @@ from ltlc.runtime.session import Session
 from ltlc.runtime.tracking import Track
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.encodings import EPISODE
+from ltlc.semantics.robustness import FALSE, TRUE
+
+Run = tuple[Timeline, Mapping[str, Array], Mapping[str, Nanoseconds]]
 
 PIECE = 1 << 14
 """So many margins are looked through at a time."""
@@ -49,6 +52,18 @@ class Curve:
     def whole(self) -> float | None:
         """That of the whole run; None if it did not begin, or cannot be measured."""
         return float(self.margins[0]) if len(self.margins) else None
+
+
+@dataclass(frozen=True, slots=True)
+class Band:
+    """Between which numbers the robustness of a property will be, however the run continues.
+
+    Of a property that cannot be measured nothing is known, and `reason` says why.
+    """
+
+    low: float = FALSE
+    high: float = TRUE
+    reason: str = ""
 
 
 class _Gathered:
@@ -97,21 +112,33 @@ class _Gathered:
 
     def curve(self, began: Nanoseconds, end: Nanoseconds) -> Curve:
         """What they come to in a run up to `end`, in a session that `began` then."""
-        times = _joined(self._times or [np.empty(0, np.int64)])
-        count = int(times.searchsorted(end, "right"))
-        if self._reason or not count:
+        if self._reason or not (run := self._run(began, end)):
             return Curve(reason=self._reason)
-        line = Timeline(times[:count], end)
-        margins = {name: _joined(parts)[:count] for name, parts in self._margins.items()}
         try:
-            found = at_steps(self._of.property, line, margins, dict.fromkeys(self._heard, began) | self._since)
+            found = at_steps(self._of.property, *run)
         except UnsupportedError as error:
             return Curve(reason=str(error))
-        return Curve(
-            line.times,
-            np.require(found, requirements=("C", "W")),
-            decided=_first_with(abs(float(found[0])), margins, line.times),
-        )
+        line, margins, _ = run
+        whole = np.require(found, requirements=("C", "W"))
+        return Curve(line.times, whole, decided=_first_with(abs(float(found[0])), margins, line.times))
+
+    def band(self, began: Nanoseconds, end: Nanoseconds) -> Band:
+        """What they can still come to in a run that has got to `end`."""
+        if self._reason or not (run := self._run(began, end)):
+            return Band(reason=self._reason)
+        try:
+            return Band(*still_possible(self._of.property, *run))
+        except UnsupportedError as error:
+            return Band(reason=str(error))
+
+    def _run(self, began: Nanoseconds, end: Nanoseconds) -> Run | None:
+        """The run up to `end`, its margins, and since when ages count; None before the first step."""
+        times = _joined(self._times or [np.empty(0, np.int64)])
+        count = int(times.searchsorted(end, "right"))
+        if not count:
+            return None
+        margins = {name: _joined(parts)[:count] for name, parts in self._margins.items()}
+        return Timeline(times[:count], end), margins, dict.fromkeys(self._heard, began) | self._since
 
 
 def _joined(parts: Sequence[Array]) -> Array:
@@ -176,3 +203,10 @@ class Measuring:
             return dict.fromkeys(self._gathered, Curve())
         until = min(end, self._session.end)
         return {label: gathered.curve(self._began, until) for label, gathered in self._gathered.items()}
+
+    def bands(self, end: Nanoseconds) -> dict[str, Band]:
+        """What is still possible of all properties by label, in a run that has got to `end`, and is not over."""
+        if self._session.paces is not None:
+            return dict.fromkeys(self._gathered, Band(reason="ticks"))
+        began = end if self._began is None else self._began
+        return {label: gathered.band(began, end) for label, gathered in self._gathered.items()}

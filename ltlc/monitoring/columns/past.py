@@ -87,12 +87,12 @@ class Predicates:
 
     def _historically(self, operand: Pieces) -> Pieces:
         """At all instants so far."""
-        return Pieces(operand.starts, extremes_from(np.minimum, operand.margins[::-1])[::-1])
+        return Pieces(operand.starts, extremes_from(np.minimum, operand.margins[::-1], TRUE)[::-1])
 
     def _once(self, operand: Pieces, within: Nanoseconds | None) -> Pieces:
         """At some instant so far, or of the last `within`."""
         if within is None:
-            return Pieces(operand.starts, extremes_from(np.maximum, operand.margins[::-1])[::-1])
+            return Pieces(operand.starts, extremes_from(np.maximum, operand.margins[::-1], FALSE)[::-1])
         starts, firsts, ends = self._recent(operand.starts, within)
         return Pieces(starts, extremes_of_windows(np.maximum, operand.margins, firsts, ends))
 

@@ -45,7 +45,7 @@ from ltlc.semantics.properties import (
     children,
     predicates,
 )
-from ltlc.semantics.robustness import TRUE
+from ltlc.semantics.robustness import FALSE, TRUE
 from ltlc.semantics.timed_atoms import timed_atoms
 
 Ended = Pieces | None
@@ -65,12 +65,35 @@ def at_steps(
     return Robustness(line, Predicates(line, margins, since)).of(property_).at(line.steps)
 
 
-class Robustness:
-    """The robustness of properties on the rest of a run from each instant on."""
+def still_possible(
+    property_: Property, line: Timeline, margins: Mapping[str, Array], since: Mapping[str, Nanoseconds]
+) -> tuple[float, float]:
+    """Between which numbers it is of the whole run, however that continues. Raises UnsupportedError as `at_steps`."""
+    predicates = Predicates(line, margins, since)
+    low, high = (Robustness(line, predicates, future).of(property_).margins[0] for future in (FALSE, TRUE))
+    return float(low), float(high)
 
-    def __init__(self, line: Timeline, predicates: Predicates) -> None:
+
+class Robustness:
+    """The robustness of properties on the rest of a run from each instant on.
+
+    If the run continues, this is the least or the greatest that it can still become: `future` is the margin of whatever
+    is said of instants that have not come. Predicates are known where the run is.
+    """
+
+    def __init__(self, line: Timeline, predicates: Predicates, future: float | None = None) -> None:
         self._line = line
         self._predicates = predicates
+        self._future = future
+
+    @property
+    def _opposite(self) -> Robustness:
+        """The future that is best for what is negated is the worst."""
+        return self if self._future is None else Robustness(self._line, self._predicates, -self._future)
+
+    def _beyond(self, none: float) -> float:
+        """What follows the last instant: `none`, unless the run continues."""
+        return none if self._future is None else self._future
 
     def of(self, property_: Property, ended: Ended = None, is_inside: bool = False) -> Pieces:
         """That of `property_`. Raises UnsupportedError of what cannot be measured."""
@@ -82,17 +105,17 @@ class Robustness:
             case Throughout(predicate):
                 return self._always(self._predicates.of(predicate), ended)
             case Not(operand):
-                return negated(self.of(operand, ended, is_inside))
+                return negated(self._opposite.of(operand, ended, is_inside))
             case And(left, right):
                 return least(self.of(left, ended, is_inside), self.of(right, ended, is_inside))
             case Or(left, right):
                 return greatest(self.of(left, ended, is_inside), self.of(right, ended, is_inside))
             case Implies(left, right):
-                return greatest(negated(self.of(left, ended, is_inside)), self.of(right, ended, is_inside))
+                return greatest(negated(self._opposite.of(left, ended, is_inside)), self.of(right, ended, is_inside))
             case Always(operand):
                 return self._always(self.of(operand, ended, True), ended)
             case Never(operand):
-                return negated(self._eventually(self.of(operand, ended, True), ended), is_new=True)
+                return negated(self._opposite.of(Eventually(operand), ended), is_new=True)
             case Eventually(operand):
                 return self._eventually(self.of(operand, ended, True), ended)
             case After(event, body):
@@ -123,9 +146,10 @@ class Robustness:
         """The extreme from each instant up to where the segment has ended."""
         none = empty(extreme)
         if ended is None:
-            return Pieces(operand.starts, extremes_from(extreme, operand.margins), none)
+            return Pieces(operand.starts, extremes_from(extreme, operand.margins, self._beyond(none)), none)
         starts = together(operand.starts, ended.starts)
-        return Pieces(starts, backwards(_clamps(extreme, operand.at(starts), ended.at(starts)), none), none)
+        clamps = _clamps(extreme, operand.at(starts), ended.at(starts))
+        return Pieces(starts, backwards(clamps, self._beyond(none)), none)
 
     def _after(self, event: Pieces, body: Pieces, ended: Ended) -> Pieces:
         """At an instant: the segment has ended, or, as x is later, the body if it is the event, and x if it is not."""
@@ -134,32 +158,32 @@ class Robustness:
         here = np.maximum(-comes, body.at(starts))
         low = np.minimum(here, comes)
         clamps = Clamps(low if ended is None else np.maximum(ended.at(starts), low), here)
-        return Pieces(starts, backwards(clamps, TRUE), TRUE)
+        return Pieces(starts, backwards(clamps, self._beyond(TRUE)), TRUE)
 
     def _within(self, duration: Nanoseconds, body: Property, ended: Ended, is_inside: bool) -> Pieces:
         """On the part of the rest from each instant that is at most `duration` later."""
 
-        def of(part: Property) -> Pieces:
-            return self._within(duration, part, ended, is_inside)
+        def of(part: Property, of: Robustness = self) -> Pieces:
+            return of._within(duration, part, ended, is_inside)
 
         match body:
             case Now():
                 return self.of(body, ended, is_inside)
             case Not(operand):
-                return negated(of(operand))
+                return negated(of(operand, self._opposite))
             case And(left, right):
                 return least(of(left), of(right))
             case Or(left, right):
                 return greatest(of(left), of(right))
             case Implies(left, right):
-                return greatest(negated(of(left)), of(right))
+                return greatest(negated(of(left, self._opposite)), of(right))
             case Throughout(predicate):
                 return self._window(np.minimum, duration, self._predicates.of(predicate), ended)
             case Always(operand) if _is_local(operand):
                 return self._window(np.minimum, duration, self.of(operand, ended, True), ended)
             case Never(operand) if _is_local(operand):
-                found = self._window(np.maximum, duration, self.of(operand, ended, True), ended)
-                return negated(found, is_new=True)
+                within = self._opposite._within(duration, Eventually(operand), ended, is_inside)
+                return negated(within, is_new=True)
             case Eventually(operand) if _is_local(operand):
                 return self._window(np.maximum, duration, self.of(operand, ended, True), ended)
             case Within(inner, operand, 0):
@@ -172,13 +196,18 @@ class Robustness:
         line, none = self._line, empty(extreme)
         inputs = operand.starts if ended is None else together(operand.starts, ended.starts)
         times = line.time(inputs)
-        starts = together(inputs, line.reaching(times, duration))
+        starts = together(
+            inputs, line.reaching(times if self._future is None else np.append(times, line.until), duration)
+        )
         firsts = pieces_at(inputs, starts)
-        ends = ends_at(times, line.time(starts) + duration)
+        until = line.time(starts) + duration
+        ends = ends_at(times, until)
+        beyond = none if self._future is None else np.where(until < line.until, none, self._future)
         if ended is None:
-            return Pieces(starts, extremes_of_windows(extreme, operand.margins, firsts, ends), none)
+            found = extremes_of_windows(extreme, operand.margins, firsts, ends)
+            return Pieces(starts, found if self._future is None else extreme(found, beyond), none)
         clamps = _clamps(extreme, operand.at(inputs), ended.at(inputs))
-        return Pieces(starts, over_windows(clamps, firsts, ends, none), none)
+        return Pieces(starts, over_windows(clamps, firsts, ends, beyond), none)
 
     def _later(self, found: Pieces, start: Nanoseconds, ended: Ended) -> Pieces:
         """What is `found` at the first instant that is `start` later; as on no instants if the segment has ended."""
@@ -189,14 +218,15 @@ class Robustness:
         starts = line.within(together(inputs, np.insert(changes, 0, 0), last))
         at = line.first_at(line.time(starts) + start)
         is_some = at < line.count
-        margins = np.where(is_some, found.at(np.minimum(at, line.count - 1)), found.after)
+        margins = np.where(is_some, found.at(np.minimum(at, line.count - 1)), self._beyond(found.after))
         if ended is None:
             return Pieces(starts, margins, found.after)
-        ends = np.where(is_some, pieces_at(inputs, at) + 1, 0)
-        begins = np.where(is_some, pieces_at(inputs, starts), 0)
-        over = extremes_of_windows(np.maximum, ended.at(inputs), begins, ends)
-        found_inside = np.maximum(over, margins) if found.after > 0 else np.minimum(-over, margins)
-        return Pieces(starts, np.where(is_some, found_inside, found.after), found.after)
+        ends = np.where(is_some, pieces_at(inputs, at) + 1, len(inputs))
+        over = extremes_of_windows(np.maximum, ended.at(inputs), pieces_at(inputs, starts), ends)
+        inside = np.maximum(over, margins) if found.after > 0 else np.minimum(-over, margins)
+        return Pieces(
+            starts, inside if self._future is not None else np.where(is_some, inside, found.after), found.after
+        )
 
 
 def _clamps(extreme: np.ufunc, margins: Array, ended: Array) -> Clamps:

@@ -1,0 +1,43 @@
+"""Between which numbers the robustness of properties will be in a run whose rows come one by one."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from ltlc.compiler import Compiled
+from ltlc.inputs.recordings.blocks import blocks_of
+from ltlc.inputs.recordings.rows import Column, Row
+from ltlc.monitoring.columns.measuring import Band, Measuring
+from ltlc.monitoring.columns.prepared import Prepared
+from ltlc.monitoring.columns.session import ByBlocks
+from ltlc.runtime.sampling import Value
+from ltlc.runtime.session import Plan, Session
+from ltlc.semantics.durations import Nanoseconds
+
+
+class Bands:
+    """Keeps the margins of all steps so far, 8 bytes for each comparison, and rows up to when they are asked for."""
+
+    def __init__(
+        self, plan: Plan, compiled: Sequence[Compiled], prepared: Sequence[Prepared], columns: Mapping[str, Column]
+    ) -> None:
+        """Of the properties of `plan`, which reads `columns`."""
+        self._columns = columns
+        self._judged = ByBlocks(Session(plan), prepared)
+        self._measuring = Measuring(self._judged.session, compiled, prepared)
+        self._rows: list[Row] = []
+
+    def take(self, time: Nanoseconds, names: Sequence[str], values: Sequence[Value]) -> None:
+        """Take the next row."""
+        self._rows.append(Row(time, dict(zip(names, values, strict=True))))
+
+    def now(self, time: Nanoseconds, is_over: bool) -> dict[str, Band]:
+        """Those of all properties by label in a run that has got to `time`; exact if it `is_over`."""
+        for block in blocks_of(self._rows, self._columns):
+            self._measuring.take(block)
+            self._judged.take(block)
+        self._rows.clear()
+        if not is_over:
+            return self._measuring.bands(time)
+        curves = self._measuring.curves(time).items()
+        return {label: Band(reason=c.reason) if c.whole is None else Band(c.whole, c.whole) for label, c in curves}
