@@ -113,6 +113,7 @@ def machine(
     news: Collection[str],
     alphabet: Alphabet,
     slots: Sequence[Slot],
+    *,
     has_pauses: bool = False,
 ) -> Machine | None:
     """The machine of a property with these `atoms`, of which those in `news` hold at steps only.
