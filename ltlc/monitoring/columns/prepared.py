@@ -98,7 +98,7 @@ def _tables(of: Compiled, slots: tuple[Slot, ...], known: dict[object, Tables | 
     key = renamed((control, atoms + counts, news, of.specification.alphabet, slots), names)
     may_pause = of.specification.slicing is None
     if (key, may_pause) not in known:
-        pausing: Callable[[], Machine | None] | None = partial(machine, *key, has_pauses=True) if may_pause else None
+        pausing = partial(machine, *key, has_pauses=True) if may_pause else None
         plain = machine(*key)
         made = pausing() if plain is None and pausing is not None else plain
         known[key, may_pause] = None if made is None else Tables(made, pausing if None in control.clocks else None)
