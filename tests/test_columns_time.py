@@ -218,6 +218,12 @@ def test_the_reason_says_when_a_clock_came_due_that_a_leap_passed() -> None:
     alike("never (v > 2 and not once w > 2 within 1500 ms)", some)
 
 
+def test_two_clocks_that_come_due_between_two_messages_both_do() -> None:
+    text = "always (new v and v > 1 implies once (new w and w > 2) within 1 s or once (new w and w < 1) within 1500 ms)"
+    before = [row(i, v=0.5, w=3.0 * (i % 2) if i < 49 else 1.5) for i in range(50)]
+    alike(text, before + [row(i, v=2.0 * (i == 160), w=1.5) for i in range(100, 200)])
+
+
 def test_a_clock_that_is_due_at_the_very_time_of_a_message_passes_after_it() -> None:
     # The one of 3 s is due at 3.5 s, when the message says so, and the news is over, in the nanosecond after it.
     some = [row(i, v=1.0, w=3.0 * (i % 50 == 5)) for i in range(2000)]
