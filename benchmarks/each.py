@@ -1,12 +1,14 @@
 """What a property of each id costs beside the same property without `each`: `python -m benchmarks.each`.
 
 Nanoseconds of CPU time a message, the best of some rounds, by the number of ids: by rows, and by columns in one block
-and in blocks as recordings are read in. And bytes for each id that is owed something.
+and in blocks as recordings are read in. And bytes for each id that is owed something. Garbage is searched for as
+rarely as in the processes of `ltlc`, or with `--library` as often as Python does.
 """
 
 from __future__ import annotations
 
 import argparse
+import gc
 import random
 import time
 import tracemalloc
@@ -17,6 +19,7 @@ import numpy as np
 from ltlc.automata import Budget
 from ltlc.backends.python.load import load_plan
 from ltlc.base.source import Source
+from ltlc.cli import ALLOCATIONS
 from ltlc.compiler import compile_specification
 from ltlc.frontend.language import load_text
 from ltlc.inputs.recordings.blocks import ROWS, Block, Samples
@@ -137,7 +140,11 @@ def main() -> None:
     parser.add_argument("--rounds", type=int, default=3)
     parser.add_argument("--messages", type=int, default=50_000)
     parser.add_argument("--columns", type=int, default=1_000_000, help="so many messages by columns")
+    parser.add_argument("--library", action="store_true", help="in a process of others")
     options = parser.parse_args()
+    if not options.library:
+        gc.freeze()
+        gc.set_threshold(ALLOCATIONS)
     for text in TEXTS:
         plans = [plan_of(f"{head}{text}") for head in ("", "each g of id: ")]
         for ids in (10, 1_000, 100_000):

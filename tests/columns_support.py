@@ -19,7 +19,7 @@ from ltlc.inputs.recordings import lacks
 from ltlc.inputs.recordings.blocks import Block, blocks_of
 from ltlc.inputs.recordings.rows import Column, Row
 from ltlc.inputs.recordings.trails import Trailing
-from ltlc.monitoring.columns import arrays, bits, follow, kept, tables, thresholds
+from ltlc.monitoring.columns import arrays, bits, follow, kept, leaps, tables, thresholds
 from ltlc.monitoring.columns import session as columns_session
 from ltlc.monitoring.columns.prepared import prepare_all
 from ltlc.monitoring.columns.session import ByBlocks
@@ -318,6 +318,7 @@ def sizes(chance: Random) -> Iterator[None]:
         (tables, "SHORT"): [0, 3, 2000],
         (follow, "SHORT"): [0, 3, 2000],
         (follow, "TOGETHER"): [0, 2, 32],
+        (leaps, "GUESSES"): [1, 2, 8],
         (bits, "BATCH"): [1, 50, 1 << 20],
         (thresholds, "PIECE"): [8, 64, 1 << 16],
         (thresholds, "PIECES"): [1, 2, 8],

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import gc
 import json
 import random
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -152,3 +154,15 @@ def test_a_diagnosis_that_took_long_is_not_made_again_at_once(
     within.keep_house()
     assert len(made) == 2
     within.end()
+
+
+def test_a_node_searches_for_garbage_more_rarely_than_python_would(names: dict[str, Any]) -> None:
+    before, usual = gc.get_threshold(), 700
+    names["watch_until"] = lambda *_: None
+    try:
+        gc.set_threshold(usual)
+        assert names["watched"](None, None, SimpleNamespace(end=lambda: 0)) == 0
+        assert gc.get_threshold()[0] > usual
+    finally:
+        gc.unfreeze()
+        gc.set_threshold(*before)

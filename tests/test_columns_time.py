@@ -7,13 +7,17 @@ from collections.abc import Sequence
 from random import Random
 
 import pytest
-from columns_support import DECLARATIONS, Drawn, judged, sizes, state
+from columns_support import DECLARATIONS, Drawn, blocks, judged, sizes, state
 from effort import share_of
 from stepping import from_text
 
+from ltlc.backends.python.load import load_plan
 from ltlc.inputs.recordings.rows import Row
 from ltlc.monitoring.columns import bits
 from ltlc.monitoring.columns.prepared import prepare_all
+from ltlc.monitoring.columns.session import ByBlocks
+from ltlc.runtime.session import Session
+from ltlc.runtime.tracking import Track
 
 COUNTS = (
     "never once {p} 3 times within {D}",
@@ -53,6 +57,26 @@ FORMS = (
     "always ({p} implies new v)",
     *COUNTS,
 )
+NEWS = (
+    "always (new v and once (new v and {p}) within {D} implies (new v implies {q}) since (new v and {p}))",
+    "always (new v and {p} implies not once (new w and {q}) within {D})",
+    "always (new v implies once (new v and {q}) within {D})",
+    "always (new v and {p} and once new w implies (new w implies once (new v and {r}) within {D}) since new w)",
+    "always (new v and {p} implies eventually (new w and {q}) within {D})",
+    "always (new v implies (once (new w and {q}) within {D} or once (new w and {p}) within {E}))",
+    "never (once (new v and {p}) within {D} and not once (new w and once (new v and {q}) within {E}) within {D})",
+    "always (not once (new v and {p}) within {D} or age(w) <= {E} or {q})",
+    "always (historically not new v for {D} implies {q})",
+    "always eventually (new v and once (new w and {p}) within {D})",
+    "always eventually not (new w or once (new v and {p}) within {D})",
+    "always (new v implies (once new w 3 times within {D} or {q}))",
+    "always (new v and {p} implies eventually (new w and {q} and once (new v and {q}) within {E}) within {D})",
+    "after_until {p} and new v, {r} and new v, always (new w implies once (new v and {q}) within {D})",
+    "never (previously once (new v and {p}) within {D} and new w and {r})",
+    "never (new v and {p} and previously {r})",
+    "always (new v implies previously {q})",
+)
+"""Properties whose letter changes at every message; in most of them clocks come due that do not decide."""
 SECOND = 10**9
 USUAL, VALUES = 1.0, (0.0, 0.5, 1.0, 1.5, 3.0)
 SHORT, LONG = (1, 5, 10), (20, 50, 200)
@@ -98,6 +122,14 @@ def test_what_is_counted_by_columns_is_what_is_counted_row_by_row(seed: int) -> 
         reference, fast = judged(of)
     assert state(fast.session) == state(reference), of.text
     assert set(fast.ways[0].because) <= {"messages that make no step, from which ages count"}
+
+
+@pytest.mark.parametrize("seed", range(share_of(60)))
+def test_what_news_changes_for_a_nanosecond_is_judged_by_columns_as_row_by_row(seed: int) -> None:
+    of = drawn(seed, NEWS)
+    with sizes(Random(seed)):
+        reference, fast = judged(of)
+    assert state(fast.session) == state(reference), of.text
 
 
 @pytest.mark.parametrize(
@@ -153,9 +185,51 @@ def test_a_clock_with_several_bounds_is_due_at_the_first_of_them() -> None:
     alike("after_until v > 2, v < 0.2, (never w > 2 within 1 s) and (eventually w > 2 within 5 s)", flat)
 
 
-def test_what_news_alone_changes_for_a_nanosecond_is_stepped() -> None:
-    compiled, specification = from_text(f"{DECLARATIONS}p: always (w > 2 implies new v)\n")
-    assert prepare_all(compiled, specification.source)[0].tables is None
+def steps_taken(text: str, rows: list[Row]) -> int:
+    """How many steps the monitor of a property itself takes, by columns."""
+    compiled, specification = from_text(f"{DECLARATIONS}p: {text}\n")
+    session = Session(load_plan(compiled, specification, {"v", "w"}))
+    taken, step = [], Track.step
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Track, "step", lambda *given: taken.append(step(*given)))
+        for block in blocks([rows], ("v", "w")):
+            ByBlocks(session, prepare_all(compiled, specification.source)).take(block)
+    assert session.tracks[0].steps == len(rows)
+    assert session.tracks[0].decided_at is None
+    return len(taken)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "always (new v and v > 2 implies not once (new w and w > 2) within 1 s)",
+        "always (new v implies once (new v and v < 2) within 5 s)",
+        "always (new w and w > 2 implies not previously w > 2)",
+        "never (v > 2 and not once w > 2 within 1500 ms)",
+    ],
+)
+def test_a_clock_that_comes_due_again_and_again_stops_no_leap(text: str) -> None:
+    some = [row(i, v=3.0 * (i % 40 == 30), w=3.0 * (i % 40 in (10, 17))) for i in range(8000)]
+    assert steps_taken(text, some) < 100
+
+
+def test_the_reason_says_when_a_clock_came_due_that_a_leap_passed() -> None:
+    some = [row(i, v=3.0 * (i == 700), w=3.0 * (i == 100)) for i in range(800)]
+    alike("never (v > 2 and not once w > 2 within 1500 ms)", some)
+
+
+def test_two_clocks_that_come_due_between_two_messages_both_do() -> None:
+    text = "always (new v and v > 1 implies once (new w and w > 2) within 1 s or once (new w and w < 1) within 1500 ms)"
+    before = [row(i, v=0.5, w=3.0 * (i % 2) if i < 49 else 1.5) for i in range(50)]
+    alike(text, before + [row(i, v=2.0 * (i == 160), w=1.5) for i in range(100, 200)])
+
+
+def test_a_clock_that_is_due_at_the_very_time_of_a_message_passes_after_it() -> None:
+    # The one of 3 s is due at 3.5 s, when the message says so, and the news is over, in the nanosecond after it.
+    some = [row(i, v=1.0, w=3.0 * (i % 50 == 5)) for i in range(2000)]
+    alike(
+        "always (new v implies not (once (new w and w > 2) within 3 s and previously not once w > 2 within 3 s))", some
+    )
 
 
 def test_scopes_that_the_past_opens_are_stepped() -> None:

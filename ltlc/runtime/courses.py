@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Container, Iterable, Iterator, Sequence
+from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from copy import copy
 
 from ltlc.runtime.episodes import NOBODY, Episodes, Watchers, count_anew, latest
@@ -297,6 +297,12 @@ class Course:
     def passed(self) -> tuple[int, ...]:
         """How many bounds of each clock have passed."""
         return self._passed or (0,) * len(self.property.clocks)
+
+    def lapse(self, dues: Mapping[str, int]) -> None:
+        """Clock steps were taken last when some clocks were due then, by attribute."""
+        if self.property.recalls:
+            clocks = zip(self.property.clocks, self.lapsed(), strict=True)
+            self._lapsed = tuple(dues.get(clock.due, was) for clock, was in clocks)
 
     def lapsed(self) -> tuple[int | None, ...]:
         """When each clock was due that a clock step took last; None if none did."""

@@ -36,7 +36,8 @@ def run_clocks(tables: Tables, atoms: Sequence[Bits], count: int, before: int) -
 def _groups(tables: Tables, columns: Sequence[Sequence[Bits]], before: Sequence[int]) -> Groups:
     """The groups of several properties, whose atoms are in `columns`, and their states `before`."""
     size, parts = columns[0][0].size, [joined(atom) for atom in zip(*columns, strict=True)]
-    places = None if tables.machine.restarts else merged(parts, size)
+    is_whole = tables.machine.restarts or not tables.machine.stutters
+    places = None if is_whole else merged(parts, size)
     keys = tables.keys([bits.at(places) for bits in parts])
     return groups_of(tables, keys, places, np.arange(len(columns)) * size, np.array(before))
 

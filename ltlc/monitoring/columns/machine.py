@@ -1,58 +1,33 @@
 """A property as one table: its monitor and which of its scopes are open, by letters as numbers.
 
-Of a property with clocks, the table has the results of steps as long as no clock comes due, and when clocks are set.
+Of a property with clocks, the table has the results of steps, and when clocks are set. Where clock steps come by
+themselves that change something, letters have a pause, and the table what comes in it (`pauses`); otherwise it is said
+of as long as no clock comes due.
 """
 
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import field
+from dataclasses import field, replace
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ltlc.dataclass import dataclass
 from ltlc.monitoring.columns.bits import Mask
+from ltlc.monitoring.columns.control import Control, Letters
+from ltlc.monitoring.columns.pauses import Rows, Setting, pauses_of, rows_of
 from ltlc.monitoring.columns.values import predicate
-from ltlc.program.machine import Base, Outcome, State
-from ltlc.program.properties import Question
 from ltlc.semantics.alphabet import Alphabet
-from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.ltl import Formula
-from ltlc.semantics.monitor import Decision, Target
 from ltlc.semantics.verdicts import Verdict
-
-Letters = NDArray[np.int64]
-"""A number for each letter, by the number of the letter: bit i is whether atom i holds."""
 
 MOST_ATOMS = 8
 MOST_STATES = 64
-MOST_DURATION = 1 << 60
-"""Of a clock, in ns: a time and that are still an integer of 64 bits."""
 
-
-class Control(NamedTuple):
-    """What a lowered machine does with the letters of its property, which its decisions ask by `questions`.
-
-    Of each clock that is an age, `clocks` has the atom that says that a message has come, and the duration; of a count,
-    the atom that it is not late. A slice of a run in one of the states `as_new` need not be kept.
-    """
-
-    questions: tuple[Question, ...]
-    clocks: tuple[tuple[str, Nanoseconds] | str | None, ...]
-    states: tuple[State, ...]
-    decisions: tuple[Decision, ...]
-    outcomes: tuple[Outcome, ...]
-    as_new: frozenset[int]
-
-    def asked(self, number: int) -> Question | None:
-        """What a decision asks of a letter; None if it asks about a clock whose lateness letters do not give."""
-        if number < len(self.questions):
-            return self.questions[number]
-        clock = self.clocks[number - len(self.questions)]
-        return Question(clock, False) if isinstance(clock, str) else None
+LEFT = (-2, 0)
+"""The state after a step that is left to the monitor."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,25 +45,18 @@ class Slot:
         return (self.opening,) if self.closing is None else (self.opening, self.closing)
 
 
-@dataclass(frozen=True, slots=True)
-class Setting:
-    """Where a clock is set, to be due a `duration` in ns after the step, and where it is stopped."""
-
-    starts: Mask
-    stops: Mask
-    duration: int
-
-
 @dataclass(frozen=True)
 class Machine:
     """`table[q, letter]` is the state after a letter, `opened[i][q, letter]` whether an episode of slot i opens.
 
     State 0 is that before the first step. Of each state, `states` has the monitor's and, as bits, the open slots;
-    `outputs` numbers its verdict, -1 before the first step. The permanent states come last, from `first_final` on. The
-    masks of `clocks` are by `[q, letter]`, too. A slice of a run need not be kept in those that are `as_new`.
+    `outputs` numbers its verdict, -1 before the first step. The permanent states come last, from `first_final` on, and
+    so does that after a step that is left to the monitor. The masks of `clocks` are by `[q, letter]`, too. A slice of a
+    run need not be kept in those that are `as_new`. Of the bits of a letter, `atoms`, the last ones are a pause.
     """
 
     atoms: int
+    pause: int
     table: NDArray[np.int64]
     opened: tuple[Mask, ...]
     states: tuple[tuple[int, int], ...]
@@ -130,27 +98,48 @@ class Machine:
         letters = np.arange(self.table.shape[1])
         return any(clock.starts[self.table, letters][:, self.allowed].any() for clock in self.clocks)
 
+    @cached_property
+    def lasting(self) -> Machine:
+        """The same, except that no step leads to a permanent state: it changes nothing."""
+        is_final = self.table >= self.first_final
+        clocks = [replace(c, starts=c.starts & ~is_final, stops=c.stops & ~is_final) for c in self.clocks]
+        stays = np.arange(len(self.table))[:, None]
+        return replace(self, table=np.where(is_final, stays, self.table), clocks=tuple(clocks))
+
 
 def machine(
-    control: Control, atoms: Sequence[str], news: Collection[str], alphabet: Alphabet, slots: Sequence[Slot]
+    control: Control,
+    atoms: Sequence[str],
+    news: Collection[str],
+    alphabet: Alphabet,
+    slots: Sequence[Slot],
+    *,
+    has_pauses: bool = False,
 ) -> Machine | None:
     """The machine of a property with these `atoms`, of which those in `news` hold at steps only.
 
-    None if it would be too large, or if there is more to its clocks than a machine has.
+    None if it would be too large, or if there is more to its clocks than a machine has, with pauses or without.
     """
-    if len(atoms) > MOST_ATOMS:
+    pause = (pauses_of(control) - 1).bit_length() if has_pauses else 0
+    if len(atoms) + pause > MOST_ATOMS:
         return None
-    holds = _holds(atoms)
-    allowed = _allowed(alphabet, holds)
-    steps = _outcomes(control, [state.step for state in control.states], holds)
-    edges = np.array([outcome.state for outcome in control.outcomes])[steps]
-    held = {**holds, **{name: np.zeros_like(allowed) for name in news}}
-    verdicts = [state.verdict for state in control.states]
-    is_final = np.array([verdict.is_permanent for verdict in verdicts])
-    clocks, settles = _settings(control, steps, holds), _settles(control, steps, edges, held) | is_final[edges]
-    if clocks is None or not settles[:, allowed].all():
+    letters = np.arange(1 << (len(atoms) + pause))
+    holds = {atom: (letters >> number & 1).astype(np.bool_) for number, atom in enumerate(atoms)}
+    held, pauses = {**holds, **{name: np.zeros_like(letters, np.bool_) for name in news}}, letters >> len(atoms)
+    allowed = _allowed(alphabet, holds, len(letters)) & (pauses < pauses_of(control))
+    rows = rows_of(control, holds, held, pauses)
+    if rows is None or not (has_pauses or rows.settles[:, allowed].all()):
         return None
-    events = [_events(slot, holds) for slot in slots]
+    events = [_events(slot, holds, len(letters)) for slot in slots]
+    found = _machine(control, rows, allowed, pause, slots, events)
+    return found if found is None or found.stutters or has_pauses else None
+
+
+def _machine(
+    control: Control, rows: Rows, allowed: Mask, pause: int, slots: Sequence[Slot], events: Sequence[tuple[Mask, Mask]]
+) -> Machine | None:
+    """The machine of these `rows`, in which scopes have the `events`."""
+    edges, is_final = rows.states, np.array([state.verdict.is_permanent for state in control.states])
     states, table, opened = [(-1, 0)], [], []
     goes_on = (edges[is_final] != np.flatnonzero(is_final)[:, None]).any()  # after a violation
     if control.clocks or goes_on:  # Clocks that come due lead to states that steps alone do not, and so do violations.
@@ -159,9 +148,11 @@ def machine(
     for state, open_ in states:
         after = edges[max(state, 0)]
         bits, opens = _scopes(open_, slots, events, len(after))
-        if state >= 0 and is_final[state]:
+        if state == LEFT[0] or (state >= 0 and is_final[state]):
             after, opens = np.full_like(after, state), np.zeros_like(opens)
-        bits = np.where(is_final[after], 0, bits)
+        else:
+            after = np.where(rows.left[max(state, 0)] & ~is_final[after] & allowed, LEFT[0], after)
+        bits = np.where(is_final[after] | (after == LEFT[0]), 0, bits)
         row = []
         for next_ in zip(after.tolist(), bits.tolist(), strict=True):
             if next_ not in numbers:
@@ -172,79 +163,12 @@ def machine(
             return None
         table.append(row)
         opened.append(opens)
-    return _ordered(verdicts, allowed, states, np.array(table), np.array(opened), clocks, control.as_new)
+    verdicts = [each.verdict for each in control.states]
+    return _ordered(verdicts, allowed, pause, states, np.array(table), np.array(opened), rows.clocks, control.as_new)
 
 
-def _holds(atoms: Sequence[str]) -> dict[str, Mask]:
-    """For each atom, the letters in which it holds."""
-    letters = np.arange(1 << len(atoms))
-    return {atom: (letters >> number & 1).astype(np.bool_) for number, atom in enumerate(atoms)}
-
-
-def _outcomes(control: Control, targets: Sequence[Target], holds: Mapping[str, Mask]) -> NDArray[np.int64]:
-    """For each of the `targets`, the number of the outcome of each letter, if no clock is late."""
-    known: dict[Target, Letters] = {}
-    count = len(next(iter(holds.values()), np.zeros(1)))
-
-    def outcomes(target: Target) -> Letters:
-        if target >= 0:
-            return np.full(count, target)
-        if target not in known:
-            number, low, high = control.decisions[~target]
-            asked = control.asked(number)
-            is_high = asked is not None and holds[asked.name] == asked.holds
-            known[target] = np.where(is_high, outcomes(high), outcomes(low))
-        return known[target]
-
-    return np.array([outcomes(target) for target in targets])
-
-
-def _settles(control: Control, steps: NDArray[np.int64], edges: NDArray[np.int64], held: Mapping[str, Mask]) -> Mask:
-    """For each state of the machine and each letter, whether no clock step that comes by itself changes anything."""
-    again = np.array([outcome.again for outcome in control.outcomes])[steps]
-    if not again.any():
-        return np.ones_like(again)
-    # Where none comes, it is not looked at where one would lead.
-    expire = [0 if state.expire is None else state.expire for state in control.states]
-    then = _outcomes(control, expire, held)[edges, np.arange(edges.shape[1])]
-    changes = np.array([bool(outcome.sets) or outcome.again for outcome in control.outcomes])
-    states = np.array([outcome.state for outcome in control.outcomes])
-    settles: Mask = ~again | (~changes[then] & (states[then] == edges))
-    return settles
-
-
-def _settings(control: Control, steps: NDArray[np.int64], holds: Mapping[str, Mask]) -> list[Setting] | None:
-    """For each clock but counts, where it is set, by the states of the machine; None if one is set in several ways.
-
-    An age is set where a message has come. While it is late, there is more to steps than a machine has.
-    """
-    found = []
-    for clock, kind in enumerate(control.clocks):
-        if isinstance(kind, str):
-            continue
-        if kind is not None:
-            news, duration = kind
-            heard = np.broadcast_to(holds[news], steps.shape)
-            found.append(Setting(heard, np.zeros_like(heard), duration))
-            continue
-        sets = [each for outcome in control.outcomes for each in outcome.sets if each.clock == clock]
-        durations = {each.duration for each in sets if each.base is not Base.NEVER}
-        has_several = len(durations) > 1 or any(each.base is Base.DUE for each in sets)
-        if has_several or max(durations, default=0) > MOST_DURATION:
-            return None
-        starts = np.array([_sets(each, clock, {Base.NOW, Base.JUST_BEFORE}) for each in control.outcomes])
-        stops = np.array([_sets(each, clock, {Base.NEVER}) for each in control.outcomes])
-        found.append(Setting(starts[steps], stops[steps], max(durations, default=0)))
-    return found
-
-
-def _sets(outcome: Outcome, clock: int, bases: Collection[Base]) -> bool:
-    return any(each.clock == clock and each.base in bases for each in outcome.sets)
-
-
-def _events(slot: Slot, holds: dict[str, Mask]) -> tuple[Mask, Mask]:
-    """The letters at which a slot opens, and closes."""
-    count = len(next(iter(holds.values()), np.zeros(1)))
+def _events(slot: Slot, holds: dict[str, Mask], count: int) -> tuple[Mask, Mask]:
+    """Those of the `count` letters at which a slot opens, and closes."""
     closes = np.zeros(count, np.bool_) if slot.closing is None else predicate(slot.closing, holds)
     return np.broadcast_to(predicate(slot.opening, holds), count), np.broadcast_to(closes, count)
 
@@ -276,6 +200,7 @@ def _scopes(open_: int, slots: Sequence[Slot], events: Sequence[tuple[Mask, Mask
 def _ordered(
     verdicts: Sequence[Verdict],
     allowed: Mask,
+    pause: int,
     states: Sequence[tuple[int, int]],
     table: NDArray[np.int64],
     opened: Mask,
@@ -284,28 +209,28 @@ def _ordered(
 ) -> Machine:
     """The machine, its permanent states last."""
     kinds = [-1 if state < 0 else list(Verdict).index(verdicts[state]) for state, _ in states]
-    finals = [state >= 0 and verdicts[state].is_permanent for state, _ in states]
+    finals = [state == LEFT[0] or (state >= 0 and verdicts[state].is_permanent) for state, _ in states]
     order = sorted(range(len(states)), key=finals.__getitem__)
     place = np.argsort(order)
     kept = tuple(states[number] for number in order)
     of = [max(state, 0) for state, _ in kept]
     return Machine(
         len(allowed).bit_length() - 1,
+        pause,
         place[table[order]],
         tuple(np.ascontiguousarray(opened[order, slot]) for slot in range(opened.shape[1])),
         kept,
         np.array(kinds)[order],
         finals.count(False),
         allowed,
-        tuple(Setting(clock.starts[of], clock.stops[of], clock.duration) for clock in clocks),
+        tuple(replace(each, starts=each.starts[of], stops=each.stops[of]) for each in clocks),
         np.array([state in as_new for state, _ in kept]),
         {state: number for number, state in enumerate(kept)},
     )
 
 
-def _allowed(alphabet: Alphabet, holds: Mapping[str, Mask]) -> Mask:
-    """The letters that exist."""
-    count = len(next(iter(holds.values()), np.zeros(1)))
+def _allowed(alphabet: Alphabet, holds: Mapping[str, Mask], count: int) -> Mask:
+    """Those of the `count` letters that exist."""
     allowed = np.ones(count, np.bool_)
     for group in alphabet.groups:
         numbers = [sum(1 << n for n, atom in enumerate(group.atoms) if atom in v) for v in group.valuations]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from functools import partial
 from itertools import count
 from typing import NamedTuple
 
@@ -14,7 +15,9 @@ from ltlc.base.source import Source
 from ltlc.compiler import Compiled
 from ltlc.dataclass import dataclass
 from ltlc.monitoring.columns.atoms import Compared, LoweredAtom, comparisons, lowered_atoms
-from ltlc.monitoring.columns.machine import MOST_DURATION, Control, Slot, machine
+from ltlc.monitoring.columns.control import Control
+from ltlc.monitoring.columns.machine import Slot, machine
+from ltlc.monitoring.columns.pauses import MOST_DURATION
 from ltlc.monitoring.columns.tables import Tables
 from ltlc.program.as_new import states_as_new
 from ltlc.program.expressions import Expression, Kept, News, Read
@@ -93,10 +96,13 @@ def _tables(of: Compiled, slots: tuple[Slot, ...], known: dict[object, Tables | 
     control = _control(of)
     counts = tuple(clock for clock in control.clocks if isinstance(clock, str))
     key = renamed((control, atoms + counts, news, of.specification.alphabet, slots), names)
-    if key not in known:
-        made = machine(*key)
-        known[key] = Tables(made) if made is not None and made.stutters else None
-    return known[key]
+    may_pause = of.specification.slicing is None
+    if (key, may_pause) not in known:
+        pausing = partial(machine, *key, has_pauses=True) if may_pause else None
+        plain = machine(*key)
+        made = pausing() if plain is None and pausing is not None else plain
+        known[key, may_pause] = None if made is None else Tables(made, pausing if None in control.clocks else None)
+    return known[key, may_pause]
 
 
 def _control(of: Compiled) -> Control:

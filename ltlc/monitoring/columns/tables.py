@@ -7,7 +7,8 @@ for keys that occur. Most keys do nothing, or lead to one state from wherever, s
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import cached_property
 from typing import Any, TypeVar
 
 import numpy as np
@@ -81,11 +82,13 @@ class Tables:
 
     `after` has where each state leads, `constant` where a key leads from any state, or `OPEN`, or `QUIET`. `clocks`,
     `changes`, `opens` and `returns` say at which steps of a group clocks are set, the verdict changes, a scope opens,
-    and a slice is kept again that need not be kept.
+    and a slice is kept again that need not be kept. If `pausing` makes the machine with pauses, these are its tables,
+    or there are tables of that for where a clock comes due.
     """
 
-    def __init__(self, machine: Machine) -> None:
+    def __init__(self, machine: Machine, pausing: Callable[[], Machine | None] | None = None) -> None:
         self.machine = machine
+        self._pausing = pausing
         self.size = 8 if machine.atoms <= 2 else 4 if machine.atoms <= 4 else 2
         self.width = 256 if machine.atoms <= 1 else 1 << 16
         states = len(machine.states)
@@ -98,6 +101,17 @@ class Tables:
         self._filled = np.zeros(self.width, np.bool_)
         self._rows: dict[int, list[int]] = {}
         self._table: list[list[int]] = machine.table.tolist()
+
+    @cached_property
+    def pausing(self) -> Tables | None:
+        """Tables of the machine with pauses, if there is one beside this."""
+        found = None if self._pausing is None or self.machine.pause else self._pausing()
+        return None if found is None else Tables(found)
+
+    @cached_property
+    def lasting(self) -> Tables:
+        """The same, except that no step leads to a permanent state: it changes nothing."""
+        return Tables(self.machine.lasting)
 
     def keys(self, parts: Sequence[Bytes]) -> Keys:
         """The keys of the bytes in `parts`, one array an atom; the tables are filled for them."""
