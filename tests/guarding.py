@@ -98,13 +98,19 @@ VALUES: dict[str, dict[str, list[object]]] = {
 CONDITIONS = ["speed <= 0.2", "speed >= 1", "near", "new speed", "speed <= limit", "new near"]
 
 
-def drawn(chance: random.Random, *, timed: bool = True) -> Drawn:
-    """A guard with one or two properties and up to two fallbacks; without clocks unless it is `timed`."""
+def drawn(chance: random.Random, *, timed: bool = True, as_one: bool = False) -> Drawn:
+    """A guard with one or two properties and up to two fallbacks; without clocks unless it is `timed`.
+
+    With two `as_one`, a property may have several clocks.
+    """
     speeds = chance.sample([0.0, 1.0], chance.choice([0, 1, 1, 1, 2]))
     fallbacks: dict[str, dict[str, object]] = {f"f{n}": {"speed": speed} for n, speed in enumerate(speeds)}
     messages = "".join(f"message {name} {{data: {values['speed']}}}\n" for name, values in fallbacks.items())
     otherwise = f" else {', '.join(fallbacks)}" if fallbacks else ""
-    properties = "".join(f"p{n}: {_property(chance, timed)}\n" for n in range(chance.choice([1, 1, 2])))
+    if as_one:
+        properties = f"p: ({_property(chance, timed)}) and ({_property(chance, timed)})\n"
+    else:
+        properties = "".join(f"p{n}: {_property(chance, timed)}\n" for n in range(chance.choice([1, 1, 2])))
     text = f"{DECLARATIONS}guard /raw to /cmd{otherwise}\n{messages}{properties}"
     read = {topic: of for topic, of in VALUES.items() if topic == "/cmd" or next(iter(of)) in properties}
     return Drawn(text, read, fallbacks, [10 * MS, 20 * MS])

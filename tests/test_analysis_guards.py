@@ -43,10 +43,13 @@ def positions(guard: Drawn, chance: random.Random) -> list[tuple[tuple[Event, ..
     return found
 
 
-@pytest.mark.parametrize("seed", range(share_of(100)))
-def test_where_a_guard_may_rest_the_world_forces_no_violation(seed: int) -> None:
+@pytest.mark.parametrize(
+    ("seed", "as_one"),
+    [*((n, False) for n in range(share_of(100))), *((n, True) for n in range(share_of(30)))],
+)
+def test_where_a_guard_may_rest_the_world_forces_no_violation(seed: int, as_one: bool) -> None:
     chance = random.Random(seed)
-    guard = drawn(chance)
+    guard = drawn(chance, as_one=as_one)
     brute = Brute(guard)
     for events, now, rests in positions(guard, chance):
         assert not rests or not (brute.is_violated(events, now) or brute.is_forced(events, now, 2)), events

@@ -71,13 +71,36 @@ def test_a_greatest_region_to_which_letters_are_added_is_refused(seed: int) -> N
     (arena,), text = certified(drawn(random.Random(seed)).text)
     found = read(arena, text)
     if objection(arena, found) is None:
-        for joint, spot in found.spots.items():
-            possible = found.diagrams.conjunction(found.assumption or 0, found.diagrams.negation(spot.rests))
-            if possible != found.diagrams.false:
-                found.spots[joint] = spot._replace(rests=found.diagrams.true)
-                name = formulas(lambda level: Atom(list(arena.read)[level]), found.diagrams)
-                assert objection(arena, found) is not None, (joint, name(possible))
-                found.spots[joint] = spot
+        assert_no_letters_can_be_added(arena, found)
+
+
+def assert_no_letters_can_be_added(arena: Arena, found: RegionRead) -> None:
+    for joint, spot in found.spots.items():
+        possible = found.diagrams.conjunction(found.assumption or 0, found.diagrams.negation(spot.rests))
+        if possible != found.diagrams.false:
+            found.spots[joint] = spot._replace(rests=found.diagrams.true)
+            name = formulas(lambda level: Atom(list(arena.read)[level]), found.diagrams)
+            assert objection(arena, found) is not None, (joint, name(possible))
+            found.spots[joint] = spot
+
+
+SEVERAL_CLOCKS = [
+    "(always (new speed implies not previously once new speed within 20 ms)) and "
+    "(always (min(scan) < 0.5 implies eventually speed <= 0.2 within 100 ms))",
+    "always (age(scan) > 200 ms implies eventually speed <= 0.2 within 100 ms)",
+    "always (min(scan) < 0.5 implies (eventually speed <= 0.2 within 0.1 s) and (eventually speed <= 0 within 0.5 s))",
+]
+
+
+@pytest.mark.parametrize("property_", SEVERAL_CLOCKS)
+def test_the_region_of_a_guard_with_several_clocks_in_a_property_is_closed_and_no_greater_one_is(
+    property_: str,
+) -> None:
+    (arena,), text = certified(f"{NEAR[: NEAR.index('at_once')]}p: {property_}\n")
+    assert arena.has_several_clocks
+    found = read(arena, text)
+    assert objection(arena, found) is None
+    assert_no_letters_can_be_added(arena, found)
 
 
 def test_what_a_guard_keeps_is_in_its_lines() -> None:
