@@ -158,7 +158,7 @@ EXAMPLES: dict[str, Example] = {
     "three guards, two that share": Example(
         CMD + "guard /grip_raw to /grip else open\nguard /lamp_raw to /lamp\nmessage open {data: 1}\n"
         "decl grip /grip std_msgs/Float64.data\ndecl lamp /lamp std_msgs/Float64.data\n"
-        "p: always (speed <= 0.2 or grip > 0)\nq: always (speed > 0.2 implies eventually grip < 0 within 1 s)\n"
+        "p: always (speed <= 0.2 or grip > 0)\nq: always age(grip) <= 200 ms\n"
         "r: always (new lamp implies not previously once new lamp within 20 ms)",
         SPEEDS | {"/grip": {"grip": [-1.0, 0.0, 1.0]}, "/lamp": {"lamp": [0.0, 1.0]}},
     ),

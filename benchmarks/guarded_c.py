@@ -122,7 +122,7 @@ def _setter(signal: Signal, example: Example, files: c.Files) -> Iterator[str]:
     """A function that gives samples one of the values of a signal."""
     field, type_ = files.samples.fields[signal], type_of(signal)
     values = next(of[signal.name] for of in example.values.values() if signal.name in of)
-    yield f"static void set_{field}(g_samples *g, judge_samples *j, uint32_t which)\n{{\n    switch (which) {{"
+    yield f"static inline void set_{field}(g_samples *g, judge_samples *j, uint32_t which)\n{{\n    switch (which) {{"
     for number, value in enumerate(values):
         yield f"    case {number}: {{"
         yield from _assigned("gj", field, value, type_)

@@ -127,6 +127,19 @@ def test_nothing_leaves_a_guard_in_c_before_its_topics_have_spoken() -> None:
 
 
 @needs_compiler
+def test_a_guard_in_c_whose_first_scan_is_not_a_number_is_silent_until_there_is_one() -> None:
+    near = Near()
+    assert near.scan(0, float("nan")) == HOLD  # 9.0 is a number: the smallest is 9.0
+    assert near.command(1, 1.0) == PASS
+    near = Near()
+    assert near.guard.hear(0, "/scan", {near.signals["scan"]: (float("nan"),)}) == HOLD
+    assert near.command(1, 0.0) == HOLD
+    assert not near.guard.has_lost
+    assert near.scan(2, 5.0) == HOLD
+    assert near.command(3, 1.0) == PASS
+
+
+@needs_compiler
 def test_a_guard_in_c_acts_ahead_of_a_deadline_as_long_as_that_is_not_over() -> None:
     for late in (0, 5 * MS, 10 * MS):
         near = Near()

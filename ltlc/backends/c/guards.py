@@ -23,7 +23,7 @@ from ltlc.backends.operators import filled, flat
 from ltlc.backends.spelling import NotInTargetError
 from ltlc.backends.statements import Do, Statement, conjunction, disjunction
 from ltlc.backends.templates import template
-from ltlc.backends.trees import INDENT, Code, Text
+from ltlc.backends.trees import INDENT, Chain, Code, Text
 from ltlc.dataclass import dataclass
 from ltlc.inputs.recordings.bags.fallbacks import samples_in
 from ltlc.program.expressions import Literal
@@ -34,10 +34,11 @@ from ltlc.program.resting import Held
 from ltlc.program.types import Type, type_of
 from ltlc.runtime.guard_plans import Asked, Asks
 from ltlc.semantics.monitor import Target
+from ltlc.specification.arrivals import waited_for
 from ltlc.specification.evaluation import Value
 from ltlc.specification.expressions import Signal
 from ltlc.specification.guards import Fallback, Guard
-from ltlc.specification.specification import topics
+from ltlc.specification.specification import topics, topics_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -265,9 +266,18 @@ class _File:
         return self.helpers.speller({}).code(Literal(int(value) if type_.scalar.is_integer else value, type_))
 
     def _ready(self) -> list[Code]:
-        """All of these hold once the guard is not silent: its topics have spoken, and have values."""
+        """All of these hold once the guard is not silent: its topics have spoken, and have values.
+
+        What waits for no command has begun by then, unless a value is NaN.
+        """
         spoken = [Text(f"run->heard_{name}") for topic, name in self.others.items() if topic in self.program.spoken]
-        return [*spoken, *self.signals.ready(self.program.awaited)] or [Text("true")]
+        not_started = Text(f"{self.of.prefix.upper()}_NOT_STARTED")
+        begun = [
+            Chain((Text(f"run->monitors.{writer.name}.verdict"), not_started), ("!=",))
+            for writer in self.parts
+            if not any(topic in self.outs for i in waited_for(writer.specification) for topic in topics_of(i.signal))
+        ]
+        return [*spoken, *self.signals.ready(self.program.awaited), *begun] or [Text("true")]
 
     def _blind(self) -> list[tuple[str, str]]:
         """Of each part where a value is missing or NaN, as far as the last step that was none does not say it."""
