@@ -249,7 +249,9 @@ def test_two_guards_hear_what_the_other_one_sends(tmp_path: Path) -> None:
     ("text", "options", "said"),
     [
         ("decl speed /cmd_vel geometry_msgs/Twist.linear.x\nnever speed > 1", (), "has no guard"),
-        (NEAR, ("--evidence", "e.txt"), "cannot be combined with --evidence"),
+        (NEAR, ("--evidence", "e.txt"), "cannot be combined with --evidence: it shows what follows from the recording"),
+        (NEAR, ("--cut", "extracts"), "cannot be combined with --cut: an extract has what was recorded"),
+        (NEAR, ("--engine", "local"), "cannot be combined with --engine: the game"),
     ],
 )
 def test_what_cannot_be_tried_is_said(
