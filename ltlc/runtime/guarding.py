@@ -28,7 +28,7 @@ class Watched(Protocol):
         what it said is not a number for a property that is to begin with it
     has_begun: whether all properties have begun
     is_blind: whether a value that is not a number keeps a property from taking steps,
-        or from beginning while the guard is silent
+        or from beginning
     violated: the label of a property that is violated, and whether it is an assumption
     rests: whether the guard may rest
     """

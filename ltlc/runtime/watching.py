@@ -173,9 +173,8 @@ class Watching:
         if is_first:
             self._first_steps(time)
         self._count(topic)
-        lacking = {self._monitors[k].verdict for k in self._nan}
-        is_stuck = self._sent is None and Verdict.NOT_STARTED in lacking
-        self.is_blind = is_stuck or not lacking.isdisjoint(_UNDER_WAY)
+        lacking = (self._monitors[k].verdict for k in self._nan)
+        self.is_blind = not all(verdict.is_permanent for verdict in lacking)
 
     def _take(self, time: int, topic: str, values: Values) -> frozenset[str]:
         """Take a message; the names of the signals that may have new samples."""
@@ -227,9 +226,6 @@ class Watching:
         is_step = monitor.invalid == invalid
         self._nan = self._nan - {k} if is_step else self._nan | {k}
         return is_step
-
-
-_UNDER_WAY = {Verdict.PRESUMABLY_VIOLATED, Verdict.PRESUMABLY_SATISFIED}
 
 
 def _concerns(window: Window, fresh: frozenset[str], topic: str) -> bool:

@@ -122,9 +122,9 @@ class Followed:
         standings = enumerate(zip(self._of.plans, self.joint.standings, strict=True))
         at = [self._at_message(k, plan, before, heard) for k, (plan, before) in standings]
         self.joint = Joint(heard.sent, tuple(at))
-        standing_at = [*enumerate(zip(self._of.plans, at, strict=True))]
-        self.is_blind = any(self._lacks(plan) for _, (plan, now) in standing_at if isinstance(now, Place)) or (
-            heard.sent is None and any(self._is_stuck(k, plan, now) for k, (plan, now) in standing_at)
+        self.is_blind = any(
+            self._lacks(plan) if isinstance(now, Place) else self._is_stuck(k, plan, now)
+            for k, (plan, now) in enumerate(zip(self._of.plans, at, strict=True))
         )
 
     def _take(self, time: int, topic: str, values: Values) -> frozenset[str]:
