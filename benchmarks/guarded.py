@@ -141,6 +141,27 @@ EXAMPLES: dict[str, Example] = {
         "p: never (speed > 0.2 and grip < 0)\nq: always (speed > 0.2 implies eventually speed <= 0.2 within 1 s)",
         SPEEDS | {"/grip": {"grip": [-1.0, 0.0, 1.0]}},
     ),
+    "no faster than a share of the first speed": Example(
+        CMD + "decl joy /joy sensor_msgs/Joy.axes[0]\n"
+        "p: after_until joy > 0, joy <= 0, always (not new speed or speed / @{speed, opening} <= 1)",
+        SPEEDS | {"/joy": {"joy": [0.0, 0.125, 1.0]}},
+    ),
+    "a sure pose": Example(
+        "guard /pose_raw to /pose else home, away\nmessage home {}\nmessage away {pose.pose.position.x: 1}\n"
+        "decl x /pose geometry_msgs/PoseWithCovarianceStamped.pose.pose.position.x\n"
+        "decl spread /pose geometry_msgs/PoseWithCovarianceStamped.pose.covariance\n"
+        "decl last /pose geometry_msgs/PoseWithCovarianceStamped.pose.covariance[35]\ndecl ok /ok std_msgs/Bool.data\n"
+        "p: always (new x and not ok implies all(spread <= 1) and x >= 0.5)\n"
+        "q: always (ok implies eventually last <= 0 within 100 ms)",
+        {"/pose": {"x": [0.0, 1.0], "spread": [(0.0,) * 36, (2.0,) * 36], "last": [0.0, 0.5]}, **_flags("ok")},
+    ),
+    "three guards, two that share": Example(
+        CMD + "guard /grip_raw to /grip else open\nguard /lamp_raw to /lamp\nmessage open {data: 1}\n"
+        "decl grip /grip std_msgs/Float64.data\ndecl lamp /lamp std_msgs/Float64.data\n"
+        "p: always (speed <= 0.2 or grip > 0)\nq: always age(grip) <= 200 ms\n"
+        "r: always (new lamp implies not previously once new lamp within 20 ms)",
+        SPEEDS | {"/grip": {"grip": [-1.0, 0.0, 1.0]}, "/lamp": {"lamp": [0.0, 1.0]}},
+    ),
 }
 
 

@@ -27,12 +27,12 @@ from ltlc.assurance.c_library import FLAGS, compiler
 from ltlc.backends import c
 from ltlc.backends.c.expressions import C
 from ltlc.backends.c.guards import GuardFiles, emit
-from ltlc.backends.c.types import type_name
+from ltlc.backends.c.types import pointer
 from ltlc.backends.operators import flat
-from ltlc.backends.spelling import NotInTargetError
 from ltlc.interfaces.building.guards import NoRegionError
 from ltlc.program.expressions import Literal
 from ltlc.program.types import Type, type_of
+from ltlc.runtime.guarding import Message
 from ltlc.specification.expressions import Signal
 
 BOUNDS = [20, 50, 90, 100, 200, 500, 1000, 2000]
@@ -48,37 +48,37 @@ class Driver:
 
     texts: dict[str, str]
 
-    def run(self, folder: Path, *arguments: str) -> str:
-        """What the program prints. Raises CalledProcessError."""
+    def run(self, folder: Path, *arguments: str, flags: Sequence[str] = ()) -> str:
+        """What the program prints, compiled with `flags` of its own. Raises CalledProcessError."""
         for name, text in self.texts.items():
             (folder / name).write_text(text, encoding="utf-8")
         sources = [name for name in self.texts if name.endswith(".c")]
         path = compiler()
         assert path is not None, "there is no C compiler"
-        flags = [flag for flag in FLAGS if flag != "-std=c99"]
+        flags = [*(flag for flag in FLAGS if flag != "-std=c99"), *flags]
         subprocess.run([path, "-std=gnu99", *flags, "-O2", *sources, "-o", "driver", "-lm"], cwd=folder, check=True)
         done = subprocess.run([folder / "driver", *arguments], capture_output=True, text=True, check=True)
         return done.stdout.strip()
 
 
-def driver(example: Example) -> Driver:
-    """What drives the guard of an example. Raises NoRegionError, NotInTargetError."""
-    specification, compiled, _, guards = programs(example.text)
+def drivers(example: Example) -> list[Driver]:
+    """What drives the guards of an example, those together that share properties. Raises as `programs`, and `emit`."""
+    specification, compiled, _, programs_ = programs(example.text)
     files, judge = c.emit(compiled, specification, "g"), c.emit(compiled, specification, "judge")
-    guard, (program,) = emit(files, guards), guards
-    out = program.guards[0].out
-    text = "\n".join(
-        [
+    found = []
+    for guard, program in zip(emit(files, programs_), programs_, strict=True):
+        parts = [
             _BEGINNING,
             *(line for signal in files.samples.group_of for line in _setter(signal, example, files)),
-            *_fillers(example, files, guard, out),
-            *_fallbacks(files, out, [dict(message.values) for message in fallbacks(program, compiled)]),
+            *_fillers(example, files, guard),
+            *_fallbacks(files, fallbacks(program, compiled)),
             *_kept(files, [files.properties[n].name for n in program.parts if n not in program.assumed]),
-            _driving(guard, [MS * bound for bound in BOUNDS], out),
+            _driving([MS * bound for bound in BOUNDS]),
         ]
-    )
-    texts = {"g.c": files.source, "g.h": files.header, "judge.c": judge.source, "judge.h": judge.header}
-    return Driver({**texts, "g_guard.c": guard.source, "g_guard.h": guard.header, "driver.c": text})
+        text = "\n".join(parts).replace("g_guard", guard.prefix).replace("G_GUARD", guard.prefix.upper())
+        texts = {"g.c": files.source, "g.h": files.header, "judge.c": judge.source, "judge.h": judge.header}
+        found.append(Driver({**texts, **guard.texts, "driver.c": text}))
+    return found
 
 
 _BEGINNING = """\
@@ -107,29 +107,33 @@ def _constant(value: object, type_: Type) -> str:
     return flat(C("g").speller({}).code(Literal(exact, type_)))
 
 
+def _assigned(samples: str, field: str, value: object, type_: Type) -> Iterator[str]:
+    """Statements of a block that give samples a value."""
+    if not isinstance(value, tuple):
+        yield " ".join(f"        {each}->{field} = {_constant(value, type_)};" for each in samples)
+    elif value:
+        items = ", ".join(_constant(each, type_.element) for each in value)
+        yield f"        static {pointer(type_)[:-1]}{field}[] = {{{items}}};"
+        yield " ".join(f"        {each}->{field}.elements = {field};" for each in samples)
+        yield " ".join(f"        {each}->{field}.length = {len(value)};" for each in samples)
+
+
 def _setter(signal: Signal, example: Example, files: c.Files) -> Iterator[str]:
     """A function that gives samples one of the values of a signal."""
     field, type_ = files.samples.fields[signal], type_of(signal)
     values = next(of[signal.name] for of in example.values.values() if signal.name in of)
-    yield f"static void set_{field}(g_samples *g, judge_samples *j, uint32_t which)\n{{\n    switch (which) {{"
+    yield f"static inline void set_{field}(g_samples *g, judge_samples *j, uint32_t which)\n{{\n    switch (which) {{"
     for number, value in enumerate(values):
         yield f"    case {number}: {{"
-        if type_.is_array:
-            assert isinstance(value, tuple)
-            items = ", ".join(_constant(each, type_.element) for each in value)
-            yield f"        static const {type_name(type_.scalar)} elements[] = {{{items}}};"
-            yield f"        g->{field}.elements = elements; g->{field}.length = {len(value)};"
-            yield f"        j->{field}.elements = elements; j->{field}.length = {len(value)};"
-        else:
-            yield f"        g->{field} = {_constant(value, type_)}; j->{field} = g->{field};"
+        yield from _assigned("gj", field, value, type_)
         yield "        break;\n    }"
     yield "    default: break;\n    }\n}\n"
 
 
-def _fillers(example: Example, files: c.Files, guard: GuardFiles, out: str) -> Iterator[str]:
-    """A function that draws a message on a topic by number; that of commands is 0."""
-    topics = [out, *guard.others]
-    yield f"enum {{ TOPICS = {len(topics)} }};\n"
+def _fillers(example: Example, files: c.Files, guard: GuardFiles) -> Iterator[str]:
+    """Functions that draw a message on a topic by number, those of commands first, and that hand it to `g_guard`."""
+    topics = [*guard.commands, *guard.others]
+    yield f"enum {{ OUTS = {len(guard.commands)}, TOPICS = {len(topics)} }};\n"
     yield "static void fill(uint32_t topic, g_samples *g, judge_samples *j)\n{"
     yield "    memset(g, 0, sizeof *g); memset(j, 0, sizeof *j);\n    switch (topic) {"
     for number, topic in enumerate(topics):
@@ -145,10 +149,11 @@ def _fillers(example: Example, files: c.Files, guard: GuardFiles, out: str) -> I
     yield "    default: break;\n    }\n}\n"
     yield "static g_guard_decision hear(g_guard_run *run, int64_t time, uint32_t topic, const g_samples *g)\n{"
     yield "    (void)run; (void)time; (void)g;\n    switch (topic) {"
-    for number, name in enumerate(guard.others.values(), 1):
-        yield f"    case {number}: return g_guard_hear_{name}(run, time, g);"
+    called = [*guard.commands.values(), *(f"{guard.prefix}_hear_{name}" for name in guard.others.values())]
+    for number, name in enumerate(called):
+        yield f"    case {number}: return g_guard{name.removeprefix(guard.prefix)}(run, time, g);"
     yield "    default: return G_GUARD_HOLD;\n    }\n}\n"
-    timed = "g_guard_due(" in guard.header
+    timed = f"{guard.prefix}_due(" in guard.header
     call = "g_guard_due(run)" if timed else "G_NEVER"
     yield f"static int64_t due(const g_guard_run *run) {{ (void)run; return {call}; }}"
     call = "g_guard_act(run, time)" if timed else "G_GUARD_HOLD"
@@ -163,20 +168,21 @@ def _news(files: c.Files, topic: str, samples: str) -> Iterator[str]:
             yield " ".join(f"        {each}->{heard.name} = true;" for each in samples)
 
 
-def _fallbacks(files: c.Files, out: str, messages: Sequence[dict[str, object]]) -> Iterator[str]:
+def _fallbacks(files: c.Files, messages: Sequence[Message]) -> Iterator[str]:
     """A function that makes the judge's samples of what the guard sends."""
     yield "static void fallback(uint32_t number, judge_samples *j)\n{"
     yield "    memset(j, 0, sizeof *j);\n    switch (number) {"
-    for number, values in enumerate(messages):
-        yield f"    case {number}:"
+    for number, message in enumerate(messages):
+        yield f"    case {number}: {{"
         for group in files.samples.groups:
-            if group.topic == out:
+            if group.topic == message.out and all(signal.name in message.values for signal in group.readings):
                 for signal in group.readings:
-                    value = _constant(values[signal.name], type_of(signal))
-                    yield f"        j->{files.samples.fields[signal]} = {value};"
+                    yield from _assigned(
+                        "j", files.samples.fields[signal], message.values[signal.name], type_of(signal)
+                    )
                 yield f"        j->has_{group.name} = true;"
-        yield from _news(files, out, "j")
-        yield "        break;"
+        yield from _news(files, message.out, "j")
+        yield "        break;\n    }"
     yield "    default: break;\n    }\n}\n"
 
 
@@ -186,7 +192,7 @@ def _kept(files: c.Files, names: Sequence[str]) -> Iterator[str]:
     yield f"static bool is_violated(const judge_monitors *j) {{ return {violated}; }}\n"
 
 
-def _driving(guard: GuardFiles, bounds: Sequence[int], out: str) -> str:
+def _driving(bounds: Sequence[int]) -> str:
     numbers = ", ".join(f"INT64_C({bound})" for bound in bounds)
     return f"""\
 static uint64_t passed, changed, held, sent, lost, violated;
@@ -237,12 +243,12 @@ static void one_run(uint32_t events)
     g_guard_init(&run);
     judge_init(&j);
     for (uint32_t number = 0; number < events; number++) {{
-        const uint32_t topic = number + 1 < TOPICS ? number + 1 : draw(2) ? 0 : draw(TOPICS);
+        const uint32_t topic = number + OUTS < TOPICS ? number + OUTS : draw(draw(2) ? OUTS : TOPICS);
         time += gap(time, due(&run));
         catch_up(&run, &j, time);
         fill(topic, &samples, &own);
-        if (topic == 0) {{
-            const g_guard_decision what = g_guard(&run, time, &samples);
+        if (topic < OUTS) {{
+            const g_guard_decision what = hear(&run, time, topic, &samples);
             if (what == G_GUARD_PASS) {{
                 (void)judge_step(&j, time, &own);
                 passed++;
@@ -292,7 +298,7 @@ static void measure(void)
     g_guard_init(&run);
     judge_init(&j);
     for (uint32_t sample = 0; sample < {SAMPLES}; sample++) {{
-        for (uint32_t topic = 1; topic < TOPICS; topic++) {{
+        for (uint32_t topic = OUTS; topic < TOPICS; topic++) {{
             catch_up(&run, &j, time);
             fill(topic, &samples, &own);
             (void)hear(&run, time, topic, &samples);
@@ -312,7 +318,7 @@ static void measure(void)
         began = now();
         for (uint32_t n = 0; n < {BATCH}; n++) {{
             time += {MS};
-            passed += g_guard(&run, time, &asked[n % 64]) == G_GUARD_PASS ? 1u : 0u;
+            passed += hear(&run, time, 0, &asked[n % 64]) == G_GUARD_PASS ? 1u : 0u;
         }}
         commands[sample] = (now() - began) / {BATCH};
     }}
@@ -355,20 +361,21 @@ def main(arguments: Sequence[str]) -> int:
         if options.names and name not in options.names:
             continue
         try:
-            made = driver(example)
-        except (NoRegionError, NotInTargetError) as error:
+            found = drivers(example)
+        except NoRegionError as error:
             print(f"{name}: left out: {error}")
             continue
-        with tempfile.TemporaryDirectory() as folder:
-            said = made.run(Path(folder), "t" if options.time else str(options.events), str(options.seed))
-        if options.time:
-            step, call, ratio, passed = said.split()
-            print(f"{name}: a step {step} ns, a command {call} ns, {ratio} times that; {passed} % pass")
-            continue
-        found = list(map(int, said.split()))
-        words = ("passed", "changed", "held back", "sent by itself", "runs lost", "runs violated")
-        print(f"{name}: {', '.join(f'{n:,} {word}' for n, word in zip(found, words, strict=True))}", flush=True)
-        violated += found[-1]
+        for made in found:
+            with tempfile.TemporaryDirectory() as folder:
+                said = made.run(Path(folder), "t" if options.time else str(options.events), str(options.seed))
+            if options.time:
+                step, call, ratio, passed = said.split()
+                print(f"{name}: a step {step} ns, a command {call} ns, {ratio} times that; {passed} % pass")
+                continue
+            counts = list(map(int, said.split()))
+            words = ("passed", "changed", "held back", "sent by itself", "runs lost", "runs violated")
+            print(f"{name}: {', '.join(f'{n:,} {word}' for n, word in zip(counts, words, strict=True))}", flush=True)
+            violated += counts[-1]
     return int(violated > 0)
 
 

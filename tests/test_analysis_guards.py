@@ -14,7 +14,13 @@ from ltlc.analysis.analyse import study_of
 from ltlc.analysis.errors import NotDecidedError
 from ltlc.analysis.guards.plays import play
 from ltlc.analysis.guards.solution import solve
-from ltlc.analysis.questions import guard_holds_back, guard_passes_nothing, guard_takes_back, uncontrollable
+from ltlc.analysis.questions import (
+    exact_equality,
+    guard_holds_back,
+    guard_passes_nothing,
+    guard_takes_back,
+    uncontrollable,
+)
 from ltlc.automata import Budget
 from ltlc.semantics.arenas import Outcome
 from ltlc.semantics.encodings import EPISODE
@@ -234,6 +240,22 @@ def test_whether_a_controller_can_keep_properties_is_answered(name: str) -> None
     study = replace(study_of(specification, EPISODE, Budget()), controls=("/cmd_vel",))
     found = [*uncontrollable.ask(study), *uncontrollable.ask_of_obligations(study)]
     assert {finding.code for finding in found} == expected
+
+
+def test_a_condition_and_what_denies_it_are_named_once() -> None:
+    specification, _ = loaded(
+        f"{BASE} else stop\np: always (speed <= 0.2 or not held)\n"
+        "q: always (speed > 0.2 implies eventually held within 1 s)\n"
+    )
+    found = [finding.message for finding in guard_holds_back.ask(study_of(specification, EPISODE, Budget()))]
+    assert found == ["no command passes where speed is more than 0.2, though it violates nothing by itself"]
+
+
+def test_what_a_guard_sends_may_be_compared_exactly() -> None:
+    lift = "decl v /lift Float64.data\np: always (new v and v == 0 implies previously v == 0)\n"
+    for text, codes in ((lift, ["LTL520"]), (f"guard /raw to /lift else halt\nmessage halt {{}}\n{lift}", [])):
+        specification, _ = loaded(text)
+        assert [each.code for each in exact_equality.ask(study_of(specification, EPISODE, Budget()))] == codes
 
 
 def test_guards_that_share_a_property_are_one_game() -> None:

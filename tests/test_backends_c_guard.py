@@ -17,7 +17,7 @@ from guarding import programs
 from quick_gate import quick_gate
 
 from benchmarks.guarded import CMD, EXAMPLES, SCAN
-from benchmarks.guarded_c import driver
+from benchmarks.guarded_c import drivers
 from ltlc.assurance import c_guard
 from ltlc.assurance.c_guard import HOLD, PASS, EmittedGuard, flaw
 from ltlc.assurance.c_library import FLAGS, Library, compiler
@@ -33,12 +33,6 @@ from ltlc.specification.expressions import Signal
 
 needs_compiler = pytest.mark.skipif(compiler() is None, reason="no C compiler")
 
-NOT_IN_C = (
-    "two guards",
-    "lights out",
-    *(name for name in EXAMPLES if name.startswith("no faster")),
-)
-IN_C = [name for name in EXAMPLES if name not in NOT_IN_C]
 MS = 1_000_000
 
 
@@ -46,17 +40,17 @@ def flaw_in(text: str, source: str | None = None) -> str | None:
     """What is wrong with the guard in `text`, or with another text of its source file."""
     specification, compiled, _, of = programs(text)
     files = c.emit(compiled, specification, "g")
-    guard = guards.emit(files, of)
-    guard = guard if source is None else replace(guard, source=source)
+    emitted = guards.emit(files, of)
+    emitted = emitted if source is None else [replace(each, source=source) for each in emitted]
     messages = Messages(types_for(specification.source, [])[0])
     try:
-        return flaw(files, guard, of[0], compiled, specification, messages)
+        return flaw(files, emitted, of, compiled, specification, messages)
     except CompilerError:
         return "it does not compile"
 
 
 @needs_compiler
-@pytest.mark.parametrize("name", IN_C)
+@pytest.mark.parametrize("name", EXAMPLES)
 def test_a_guard_in_c_decides_as_the_runtime_does(name: str) -> None:
     assert flaw_in(EXAMPLES[name].text) is None
 
@@ -75,8 +69,8 @@ held: always (age(joy) > 500 ms and previously age(joy) > 500 ms implies speed =
 @needs_compiler
 def test_a_changed_guard_is_noticed() -> None:
     specification, compiled, _, of = programs(ALL)
-    source = guards.emit(c.emit(compiled, specification, "g"), of).source
-    drawn = random.Random(0).sample([*mutants(source)], share_of(20))
+    (guard,) = guards.emit(c.emit(compiled, specification, "g"), of)
+    drawn = random.Random(0).sample([*mutants(guard.source)], share_of(20))
     # A change can make an endless loop, so each is run in a child.
     found = run_all([partial(flaw_in, ALL, text) for _, text in drawn], Budget(60, 2048))
     assert not [what for (what, _), wrong in zip(drawn, found, strict=True) if wrong is None]
@@ -84,15 +78,18 @@ def test_a_changed_guard_is_noticed() -> None:
 
 @needs_compiler
 def test_what_leaves_a_guard_in_c_violates_nothing_as_the_monitors_in_c_judge(tmp_path: Path) -> None:
-    for name in ("near", "e-stop until reset"):
-        passed, changed, _, sent, lost, violated = map(int, driver(EXAMPLES[name]).run(tmp_path, "20000", "7").split())
-        assert min(passed, changed, sent) > 0
+    for name, is_sent in {"near": True, "e-stop until reset": True, "two guards": True, "a sure pose": False}.items():
+        (made,) = drivers(EXAMPLES[name])
+        flags = ("-fsanitize=address,undefined", "-fno-sanitize-recover")
+        passed, changed, _, sent, lost, violated = map(int, made.run(tmp_path, "20000", "7", flags=flags).split())
+        assert min(passed, changed) > 0
+        assert (sent > 0) is is_sent
         assert (lost, violated) == (0, 0)
 
 
 @needs_compiler
 def test_the_judge_in_c_finds_what_a_guard_that_minds_nothing_lets_through(tmp_path: Path) -> None:
-    made = driver(EXAMPLES["near"])
+    (made,) = drivers(EXAMPLES["near"])
     source = made.texts["g_guard.c"].replace("return target == 1;", "return true;")
     assert source != made.texts["g_guard.c"]
     *_, violated = replace(made, texts={**made.texts, "g_guard.c": source}).run(tmp_path, "2000", "7").split()
@@ -105,7 +102,7 @@ class Near:
     def __init__(self, text: str = EXAMPLES["near"].text) -> None:
         specification, compiled, _, of = programs(text)
         files = c.emit(compiled, specification, "g")
-        guard = guards.emit(files, of)
+        (guard,) = guards.emit(files, of)
         path = compiler()
         assert path is not None
         self.guard = EmittedGuard(Library(files, path, guard), guard)
@@ -127,6 +124,19 @@ def test_nothing_leaves_a_guard_in_c_before_its_topics_have_spoken() -> None:
     assert near.command(0, 0.0) == HOLD
     assert near.scan(1, 5.0) == HOLD
     assert near.command(2, 1.0) == PASS
+
+
+@needs_compiler
+def test_a_guard_in_c_whose_first_scan_is_not_a_number_is_silent_until_there_is_one() -> None:
+    near = Near()
+    assert near.scan(0, float("nan")) == HOLD  # 9.0 is a number: the smallest is 9.0
+    assert near.command(1, 1.0) == PASS
+    near = Near()
+    assert near.guard.hear(0, "/scan", {near.signals["scan"]: (float("nan"),)}) == HOLD
+    assert near.command(1, 0.0) == HOLD
+    assert not near.guard.has_lost
+    assert near.scan(2, 5.0) == HOLD
+    assert near.command(3, 1.0) == PASS
 
 
 @needs_compiler
@@ -189,26 +199,35 @@ def test_a_command_that_is_no_number_does_not_pass_and_none_with_an_earlier_time
     assert near.command(12, 0.1) == PASS
 
 
-ARRAY = """guard /out_raw to /out else none
-message none {}
-decl axes /out sensor_msgs/Joy.axes
-never axes[0] > 1
-"""
-
-
 @pytest.mark.parametrize(
     ("text", "why"),
     [
-        (EXAMPLES["two guards"].text, "more than one guard"),
-        (ARRAY, "array"),
         (f"{CMD}guarded: never speed > 1", "begins with `guard`"),
-        (f"{CMD}never (speed > 2 and speed > @{{speed, opening}})", "opening"),
+        (
+            f"{CMD}guard /cmd_vel/act_raw to /cmd_vel/act\ndecl act /cmd_vel/act std_msgs/Bool.data\n"
+            "p: never speed > 1\nq: never new act",
+            "`guard_cmd_vel` and `guard_cmd_vel_act`",
+        ),
     ],
 )
 def test_what_a_guard_in_c_does_not_have_is_refused_by_name(text: str, why: str) -> None:
     specification, compiled, _, of = programs(text)
     with pytest.raises(NotInTargetError, match=why):
         guards.emit(c.emit(compiled, specification, "g"), of)
+
+
+def test_independent_guards_have_files_of_their_own_and_those_that_share_a_property_one_run() -> None:
+    specification, compiled, _, of = programs(EXAMPLES["three guards, two that share"].text)
+    found = guards.emit(c.emit(compiled, specification, "g"), of)
+    assert [[*each.texts] for each in found] == [
+        ["g_guard_cmd_vel.h", "g_guard_cmd_vel.c"],
+        ["g_guard_lamp.h", "g_guard_lamp.c"],
+    ]
+    assert [each.commands for each in found] == [
+        {"/cmd_vel": "g_guard_cmd_vel_cmd_vel", "/grip": "g_guard_cmd_vel_grip"},
+        {"/lamp": "g_guard_lamp"},
+    ]
+    assert found[0].sent == ("G_GUARD_CMD_VEL_CMD_VEL_STOP", "G_GUARD_CMD_VEL_GRIP_OPEN")
 
 
 PROPERTIES = EXAMPLES["near"].text.replace("p:", "near:").replace("q:", "slow:")
@@ -271,7 +290,7 @@ def test_the_program_of_the_documentation_prints_what_it_says(tmp_path: Path) ->
     blocks = [textwrap.dedent(each) for each in re.findall(r"(?:^    .*\n|^\n)+", page, re.MULTILINE)]
     specification, compiled, _, of = programs(next(each for each in blocks if "# safe.txt" in each))
     files = c.emit(compiled, specification, "safe")
-    guard = guards.emit(files, of)
+    (guard,) = guards.emit(files, of)
     texts = {"safe.h": files.header, "safe.c": files.source, "safe_guard.h": guard.header, "safe_guard.c": guard.source}
     for name, text in {**texts, "main.c": next(each for each in blocks if "safe_guard.h" in each)}.items():
         (tmp_path / name).write_text(text, encoding="utf-8")
@@ -287,5 +306,24 @@ def test_a_worst_case_is_stated_in_the_header() -> None:
     specification, compiled, _, of = programs(
         f"{CMD}{SCAN}slow: always (new speed and min(scan) < 0.5 implies speed <= 0.2)"
     )
-    guard = guards.emit(c.emit(compiled, specification, "g"), of)
+    (guard,) = guards.emit(c.emit(compiled, specification, "g"), of)
     assert str(guard.bound) in " ".join(guard.header.replace("*", "").split())
+
+
+@needs_compiler
+def test_files_of_independent_guards_are_certified_one_by_one(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(c_guard, "EVENTS", 200)
+    (tmp_path / "p.txt").write_text(EXAMPLES["three guards, two that share"].text, encoding="utf-8")
+    files = [str(tmp_path / name) for name in ("p.txt", "p.cert", "p.c")]
+    with quick_gate():
+        assert main(["build", files[0], "-t", "c", "-o", files[2], "--certificate", files[1]]) == 0
+    assert "decisions a call of the guard of /cmd_vel and /grip; at most" in capsys.readouterr().out
+    assert main(["certify", files[0], files[1], "--code", files[2]]) == 0
+    said = capsys.readouterr().out
+    for out in ("/cmd_vel", "/grip", "/lamp"):
+        assert f"guard {out}: where it rests, read back, matches its region" in said
+    (tmp_path / "p_guard_lamp.h").unlink()
+    assert main(["certify", files[0], files[1], "--code", files[2]]) == 1
+    assert "p_guard_lamp.h: it is missing" in " ".join(capsys.readouterr().out.split())

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import random
 from pathlib import Path
+from xml.etree import ElementTree
 
 import pytest
 from effort import share_of
@@ -156,6 +157,21 @@ def test_a_command_without_a_value_does_not_pass_nor_does_any_while_a_sensor_has
     ]
 
 
+def test_a_guard_whose_first_scan_is_not_a_number_holds_back_until_there_is_one(tmp_path: Path) -> None:
+    rows: list[Row] = [
+        {"time": 1, "scan": ["NaN", "NaN"]},
+        {"time": 2, "asked": 0.1},
+        {"time": 3, "scan": ["NaN"]},
+        {"time": 4, "scan": [2.0, "NaN"]},
+        {"time": 5, "asked": 1},
+    ]
+    _, document = guarded(tmp_path, ASKED + NEAR, rows)
+    assert [(time, kind, why) for time, kind, _, _, why in deeds(document)] == [
+        (2, "held_back", "a value is missing"),
+        (5, "passed", ""),
+    ]
+
+
 def test_a_broken_assumption_loses_and_from_then_on_the_first_fallback_is_sent(tmp_path: Path) -> None:
     text = ASKED + NEAR + "\nassume a: always min(scan) > 0.1"
     rows: list[Row] = [
@@ -168,6 +184,26 @@ def test_a_broken_assumption_loses_and_from_then_on_the_first_fallback_is_sent(t
     assert code == 1
     lost = "the assumption `a` is violated"
     assert deeds(document)[1:] == [(3, "lost", None, None, lost), (4, "changed", 0.1, 0, f"the guard has lost: {lost}")]
+
+
+def test_a_guard_that_loses_is_a_failure_of_its_own_in_junit(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = ASKED + NEAR + "\nassume a: always min(scan) > 0.1"
+    rows: list[Row] = [{"time": 1, "scan": [2.0]}, {"time": 2, "asked": 1}, {"time": 3, "scan": [0.05]}]
+    guarded(tmp_path, text, rows[:2])
+    (tmp_path / "r.jsonl").rename(tmp_path / "kept.jsonl")
+    assert guarded(tmp_path, text, rows)[0] == 1
+    for recordings in (["kept.jsonl"], ["r.jsonl"], ["kept.jsonl", "r.jsonl"]):
+        main(["run", "--guard", "--format", "junit", str(tmp_path / "p.txt"), *(str(tmp_path / r) for r in recordings)])
+        cases = [
+            (case.attrib["name"], [(each.tag, each.get("message")) for each in case])
+            for case in ElementTree.fromstring(capsys.readouterr().out).iter("testcase")
+            if case.attrib["name"].startswith("guard")
+        ]
+        lost = ("failure", "lost at +2.0 s: the assumption `a` is violated")
+        found = {"kept.jsonl": ("system-out", None), "r.jsonl": lost}
+        assert cases == [("guard of /cmd_vel", [found[name]]) for name in recordings]
 
 
 def test_the_page_says_what_the_guard_did(tmp_path: Path) -> None:
@@ -213,7 +249,9 @@ def test_two_guards_hear_what_the_other_one_sends(tmp_path: Path) -> None:
     ("text", "options", "said"),
     [
         ("decl speed /cmd_vel geometry_msgs/Twist.linear.x\nnever speed > 1", (), "has no guard"),
-        (NEAR, ("--evidence", "e.txt"), "cannot be combined with --evidence"),
+        (NEAR, ("--evidence", "e.txt"), "cannot be combined with --evidence: it shows what follows from the recording"),
+        (NEAR, ("--cut", "extracts"), "cannot be combined with --cut: an extract has what was recorded"),
+        (NEAR, ("--engine", "local"), "cannot be combined with --engine: the game"),
     ],
 )
 def test_what_cannot_be_tried_is_said(

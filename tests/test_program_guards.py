@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import random
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import replace
 from itertools import pairwise
+from math import nan
 from typing import ClassVar
 
 import pytest
@@ -132,6 +134,37 @@ def test_along_a_run_the_program_rests_where_the_region_has_it(name: str, monkey
     monkeypatch.setattr(recording, "Followed", _Beside)
     driven = Driven(EXAMPLES[name])
     assert all(sum(driven.run(random.Random(seed), 60).values()) for seed in range(share_of(8)))
+
+
+MISSING = (
+    "near",
+    "slew rate",
+    "battery low",
+    "two fallbacks",
+    "two guards",
+    "no faster than a share of the first speed",
+)
+
+
+@pytest.mark.parametrize("name", MISSING)
+def test_along_a_run_in_which_values_are_missing_the_program_is_where_the_reference_is(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    specification, compiled, _, guards = programs(EXAMPLES[name].text)
+    monkeypatch.setattr(_Beside, "plan", load_plan(compiled, specification, guards=guards), raising=False)
+    monkeypatch.setattr(recording, "Followed", _Beside)
+    values = {
+        topic: {signal: [*of, *map(_missing, of)] for signal, of in signals.items()}
+        for topic, signals in EXAMPLES[name].values.items()
+    }
+    driven = Driven(replace(EXAMPLES[name], values=values))
+    found = sum((driven.run(random.Random(seed), 40) for seed in range(share_of(20))), Counter[str]())
+    assert found["passed"]
+
+
+def _missing(value: object) -> object:
+    """NaN in the place of a number."""
+    return (nan,) if isinstance(value, tuple) else nan if isinstance(value, float) else value
 
 
 def test_a_command_without_a_value_makes_the_program_blind() -> None:

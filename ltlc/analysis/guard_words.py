@@ -12,12 +12,6 @@ from ltlc.specification.specification import Specification, topics
 from ltlc.specification.text import text
 
 
-def stated(guard: Guard) -> str:
-    """`guard` as its author wrote it, on one line."""
-    fallbacks = f" else {', '.join(each.name for each in guard.fallbacks)}" if guard.fallbacks else ""
-    return f"guard {guard.raw} to {guard.out}{fallbacks}"
-
-
 def sentences(specification: Specification, guard: Guard) -> str:
     """What `guard`, one of `specification`, does."""
     kept = listed([f"`{each.label}`" for each in specification.kept_by(guard)], "or")

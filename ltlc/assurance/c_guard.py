@@ -18,6 +18,7 @@ from ltlc.backends.c.guards import GuardFiles
 from ltlc.backends.python.load import load_plan
 from ltlc.compiler import Compiled
 from ltlc.dataclass import dataclass
+from ltlc.inputs.recordings.bags.fallbacks import samples_in
 from ltlc.program.guards import GuardProgram
 from ltlc.program.types import Scalar, type_of
 from ltlc.runtime.guarding import Action, Deed, Guard, Message
@@ -26,8 +27,6 @@ from ltlc.runtime.watching import Watching
 from ltlc.semantics.durations import UNITS, Nanoseconds
 from ltlc.specification.evaluation import Value
 from ltlc.specification.expressions import Field, Signal
-from ltlc.specification.fallbacks import value_in
-from ltlc.specification.guards import Fallback
 from ltlc.specification.specification import Specification, fields
 
 HOLD, PASS = 0, 1
@@ -38,16 +37,17 @@ EVENTS, LONGEST, LOST = 3000, 40, 3
 
 
 class EmittedGuard(Monitors):
-    """A guard of a library in one run."""
+    """Guards of a library that share properties, in one run."""
 
     def __init__(self, library: Loaded, guard: GuardFiles) -> None:
         super().__init__(library)
         functions = library.functions
+        self._outs = {topic: number for number, topic in enumerate(guard.commands)}
         self._topics = {topic: number for number, topic in enumerate(guard.others)}
         functions.gate_guard_due.restype = ctypes.c_int64
         functions.gate_guard_lost.restype = ctypes.c_bool
         time = ctypes.c_int64
-        functions.gate_guard_command.argtypes = [ctypes.c_void_p, time, ctypes.c_void_p]
+        functions.gate_guard_command.argtypes = [ctypes.c_void_p, time, ctypes.c_void_p, ctypes.c_int]
         functions.gate_guard_hear.argtypes = [ctypes.c_void_p, time, ctypes.c_void_p, ctypes.c_int]
         functions.gate_guard_act.argtypes = [ctypes.c_void_p, time]
         self._run = ctypes.create_string_buffer(functions.gate_guard_size())
@@ -61,7 +61,7 @@ class EmittedGuard(Monitors):
     def command(self, time: Nanoseconds, out: str, sample: dict[Signal, Value]) -> int:
         """A command has come."""
         self._fill(sample, [out])
-        return int(self._functions.gate_guard_command(self._run, time, self._samples))
+        return int(self._functions.gate_guard_command(self._run, time, self._samples, self._outs[out]))
 
     def hear(self, time: Nanoseconds, topic: str, sample: dict[Signal, Value]) -> int:
         """A message has come on another topic."""
@@ -99,16 +99,15 @@ class Beside:
 
     def __init__(self, emitted: EmittedGuard, guard: Guard) -> None:
         self.emitted, self.guard = emitted, guard
-        self._sent = [HOLD, PASS, *(message.name for message in guard.fallbacks)]
+        self._sent = [(message.name, message.out) for message in guard.fallbacks]
 
     def take(self, event: Event) -> tuple[list[int], list[int]]:
         """What is due before an event, and the event."""
         right, found = self._late(event.time) if event.is_late else self._due(event.time)
         sample = {signal.name: value for signal, value in event.sample.items()}
-        (out,) = self.guard.outs
-        if event.topic == out:
-            right.append(self._decided(self.guard.command(event.time, out, sample)))
-            found.append(self.emitted.command(event.time, out, event.sample))
+        if event.topic in self.guard.outs:
+            right.append(self._decided(self.guard.command(event.time, event.topic, sample)))
+            found.append(self.emitted.command(event.time, event.topic, event.sample))
         elif event.topic is not None:
             right += map(self._decided, self.guard.hear(event.time, event.topic, sample))
             found.append(self.emitted.hear(event.time, event.topic, event.sample))
@@ -133,7 +132,9 @@ class Beside:
     def _decided(self, deed: Deed) -> int:
         if deed.action in (Action.HELD, Action.LOST):
             return HOLD
-        return PASS if deed.action is Action.PASSED else self._sent.index(deed.message or "")
+        if deed.action is Action.PASSED:
+            return PASS
+        return PASS + 1 + self._sent.index((deed.message or "", deed.outs[0]))
 
 
 class Drawn:
@@ -141,8 +142,8 @@ class Drawn:
 
     def __init__(self, program: GuardProgram, samples: Sequence[Samples]) -> None:
         self.program, self._samples = program, samples
-        self.out = program.guards[0].out
-        self._first = program.spoken or (self.out,)
+        self._outs = [guard.out for guard in program.guards]
+        self._first = program.spoken or self._outs
         self._topics: dict[str, list[Signal]] = {}
         for signal in (s for some in samples for s in some.sources.signals):
             if isinstance(signal.definition, Field):
@@ -159,7 +160,7 @@ class Drawn:
         time = now + chance.choice([0, 0, 1, UNITS["ms"], 10 * UNITS["ms"], 100 * UNITS["ms"], UNITS["s"]])
         if due < NEVER and chance.random() < 0.5:
             time = max(now, due + chance.choice([-self.program.lead, 0, self.program.lead]) + chance.choice([-1, 0, 1]))
-        topic = chance.choice([None, self.out, *self._topics])
+        topic = chance.choice([None, *self._outs, *self._topics])
         values: dict[Signal, Value] = {}
         for some in self._samples:
             values |= some.next(()).sample
@@ -178,25 +179,29 @@ def _unknown(signal: Signal, value: Value) -> Value:
 
 def flaw(
     files: Files,
-    guard: GuardFiles,
-    program: GuardProgram,
+    guards: Sequence[GuardFiles],
+    programs: Sequence[GuardProgram],
     compiled: Sequence[Compiled],
     specification: Specification,
     messages: Messages,
 ) -> str | None:
-    """What the text of a guard, or what it does, is otherwise than it should; None if nothing is found.
+    """What the texts of guards, or what they do, is otherwise than it should; None if nothing is found.
 
-    Without a C compiler, it is not run.
+    Without a C compiler, they are not run.
     """
-    texts = Texts(files.header, files.source, guard.header, guard.source)
-    if (wrong := difference(texts, program, compiled)) is not None:
-        return str(wrong)
     path = compiler()
-    if path is None:
-        return None
-    parts = [compiled[number].specification for number in program.parts]
-    drawn = Drawn(program, [Samples(without_news(each), read(each, messages)) for each in parts])
-    return deviation(Library(files, path, guard), guard, program, compiled, specification, drawn)
+    for guard, program in zip(guards, programs, strict=True):
+        texts = Texts(files.header, files.source, guard.header, guard.source)
+        if (wrong := difference(texts, program, compiled)) is not None:
+            return str(wrong)
+        if path is None:
+            continue
+        parts = [compiled[number].specification for number in program.parts]
+        drawn = Drawn(program, [Samples(without_news(each), read(each, messages)) for each in parts])
+        deviates = deviation(Library(files, path, guard), guard, program, compiled, specification, drawn)
+        if deviates is not None:
+            return deviates
+    return None
 
 
 def deviation(
@@ -231,18 +236,15 @@ def fallbacks(program: GuardProgram, compiled: Sequence[Compiled]) -> list[Messa
     inputs = (i for number in program.parts for i in compiled[number].specification.inputs())
     read = dict.fromkeys(pair for i in inputs for pair in fields(i.signal))
     return [
-        Message(fallback.name, guard.out, _values(fallback, [s for s, field in read if field.topic == guard.out]))
+        Message(fallback.name, guard.out, samples_in(fallback, guard, own))
         for guard in program.guards
+        for own in [{signal.name: signal for signal, field in read if field.topic == guard.out}]
         for fallback in guard.fallbacks
     ]
 
 
-def _values(fallback: Fallback, signals: Sequence[Signal]) -> dict[str, Value]:
-    found = ((signal.name, value_in(fallback, signal)) for signal in signals)
-    return {name: constant.value for name, constant in found if constant is not None}
-
-
 def _shown(guard: GuardFiles, decisions: Sequence[int]) -> str:
     """Decisions in words."""
-    names = ["nothing", "the command", *(name.lower() for name in guard.sent)]
+    sent = (name.removeprefix(f"{guard.prefix.upper()}_").lower() for name in guard.sent)
+    names = ["nothing", "the command", *sent]
     return " and ".join(f"`{names[each]}`" for each in decisions) or "nothing"

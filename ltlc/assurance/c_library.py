@@ -48,7 +48,7 @@ class Library(Loaded):
 def _load(files: Files, folder: Path, path: str, guard: GuardFiles | None) -> Any:
     """Compile in a child, whose time and memory are bounded."""
     texts = {f"{files.stem}.h": files.header, f"{files.stem}.c": files.source}
-    texts |= {} if guard is None else {f"{guard.stem}.h": guard.header, f"{guard.stem}.c": guard.source}
+    texts |= {} if guard is None else guard.texts
     glue = _glue(files) if guard is None else (*_glue(files), *_glue_of(guard, files))
     for name, text in {**texts, "gate.c": "\n".join(glue)}.items():
         (folder / name).write_text(text, encoding="utf-8")
@@ -99,7 +99,7 @@ def _glue(files: Files) -> Iterator[str]:
 
 
 def _glue_of(guard: GuardFiles, files: Files) -> Iterator[str]:
-    """The guard beside them; its decisions are numbers, and so are the topics other than that of commands."""
+    """The guards beside them, which share properties; decisions are numbers, and so are topics."""
     own, samples = guard.prefix, f"const {files.prefix}_samples *s"
     yield f'#include "{guard.stem}.h"'
     yield f"size_t gate_guard_size(void); size_t gate_guard_size(void) {{ return sizeof({own}_run); }}"
@@ -107,17 +107,18 @@ def _glue_of(guard: GuardFiles, files: Files) -> Iterator[str]:
     head = f"bool gate_guard_lost(const {own}_run *g)"
     yield f"{head}; {head} {{ return g->has_lost; }}"
     for head, call in (
-        (f"int gate_guard_command({own}_run *g, int64_t time, {samples})", f"{own}(g, time, s)"),
         (f"int gate_guard_act({own}_run *g, int64_t time)", f"{own}_act(g, time)"),
         (f"int64_t gate_guard_due(const {own}_run *g)", f"{own}_due(g)"),
     ):
         is_there = f"{call.split('(')[0]}(" in guard.header
         unused = "(void)g, (void)time, 0" if "time" in head else f"(void)g, {files.prefix.upper()}_NEVER"
         yield f"{head}; {head} {{ return {f'({head.split()[0]}){call}' if is_there else unused}; }}"
-    head = f"int gate_guard_hear({own}_run *g, int64_t time, {samples}, int topic)"
-    cases = (f"case {n}: return (int){own}_hear_{name}(g, time, s);" for n, name in enumerate(guard.others.values()))
-    yield f"{head}; {head}"
-    yield f"{{ (void)g; (void)time; (void)s; switch (topic) {{ {' '.join(cases)} default: return -1; }} }}"
+    hearing = [f"{own}_hear_{name}" for name in guard.others.values()]
+    for name, called in (("command", guard.commands.values()), ("hear", hearing)):
+        head = f"int gate_guard_{name}({own}_run *g, int64_t time, {samples}, int topic)"
+        cases = (f"case {n}: return (int){function}(g, time, s);" for n, function in enumerate(called))
+        yield f"{head}; {head}"
+        yield f"{{ (void)g; (void)time; (void)s; switch (topic) {{ {' '.join(cases)} default: return -1; }} }}"
 
 
 def _of_monitors(prefix: str) -> Iterator[str]:

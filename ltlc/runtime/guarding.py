@@ -24,9 +24,11 @@ class Watched(Protocol):
     """Where the properties of a guard are.
 
     time: that of the last event, in ns
-    is_silent: whether a topic that is waited for has not spoken, or lacks a value
+    is_silent: whether a topic that is waited for has not spoken, or lacks a value, or
+        what it said is not a number for a property that is to begin with it
     has_begun: whether all properties have begun
-    is_blind: whether a value that is not a number keeps a property from taking steps
+    is_blind: whether a value that is not a number keeps a property from taking steps,
+        or from beginning
     violated: the label of a property that is violated, and whether it is an assumption
     rests: whether the guard may rest
     """
@@ -242,13 +244,14 @@ class Guard:
 
     def _respond(self, time: int, when: str, now: int) -> list[Deed]:
         """Answer what has come at `time`, if something has to be."""
-        violated = self.watched.violated
+        violated, is_silent = self.watched.violated, self.watched.is_silent
         if self.lost is not None or (
-            violated is None and (self.watched.is_blind or self.watched.rests)
+            violated is None
+            and (is_silent or self.watched.is_blind or self.watched.rests)
         ):
             return []
         otherwise = self.watched.fork()
-        for message in () if self.watched.is_silent else self.fallbacks:
+        for message in () if is_silent else self.fallbacks:
             if self._having_sent(self.watched, time, message) is not None:
                 if now - time > self.lead:
                     delay = span_text(now - time)
@@ -274,9 +277,9 @@ class Guard:
         """Why no command passes now; None if one may."""
         if self.lost is not None:
             return f"the guard has lost: {self.lost}"
-        if self.watched.is_silent:
-            return "a topic has not spoken yet"
-        return "a value is missing" if self.watched.is_blind else None
+        if self.watched.is_blind:
+            return "a value is missing"
+        return "a topic has not spoken yet" if self.watched.is_silent else None
 
     @staticmethod
     def _objection(after: Watched) -> str | None:
@@ -295,7 +298,9 @@ class Guard:
         if self.watched.is_silent:
             return None
         if self.lost is not None or self.watched.is_blind:
-            return own[0] if own else None
+            # What has not begun would not begin with a message now.
+            may_send = self.lost is not None or self.watched.has_begun
+            return own[0] if own and may_send else None
         tried = (m for m in own if self._having_sent(self.watched, time, m) is not None)
         return next(tried, None)
 

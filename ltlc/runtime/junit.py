@@ -8,6 +8,8 @@ from html import escape
 from typing import Any
 
 from ltlc.dataclass import dataclass
+from ltlc.runtime.guard_reports import actions_text
+from ltlc.runtime.guarding import Action
 from ltlc.runtime.properties import stated
 from ltlc.runtime.reports import figure, printable, sentence, unseen
 from ltlc.runtime.session import Session
@@ -91,6 +93,26 @@ def suite_text(
         f"{_properties_text(properties, '  ')}"
         f"{''.join(_case_text(name, case) for case in cases)}{output}</testsuite>\n"
     )
+
+
+def guard_case(guard: Mapping[str, Any]) -> Case:
+    """The guard of one topic, as the list `guard` of a report in JSON has it.
+
+    That it lost is a failure.
+    """
+    counts = guard.get("counts") or {
+        each.value: len(guard[each.value]) for each in Action
+    }
+    did = actions_text({each: counts[each.value] for each in Action})
+    lost = [*map(_loss_text, guard[Action.LOST.value])]
+    details = "".join(f"{printable(each)}\n" for each in (*lost, did))
+    element, kind = ("failure", "lost") if counts[Action.LOST.value] else (None, "kept")
+    return Case(f"guard of {guard['out']}", element, kind, (lost or [did])[0], details)
+
+
+def _loss_text(entry: Mapping[str, Any]) -> str:
+    at = f" at +{entry['offset']} s" if "offset" in entry else ""
+    return f"lost{at}: {entry['reason']}"
 
 
 def _case_text(suite: str, case: Case) -> str:

@@ -160,7 +160,6 @@ class Watching:
             return
         fresh = self._take(time, topic, values)
         self._unheard -= {topic}
-        self._count(topic)
         is_first, self._has_begun = not self._has_begun, True
         for k, part in enumerate(self._parts):
             monitor, of = self._monitors[k], part.of
@@ -173,13 +172,9 @@ class Watching:
         mark(self._known, self._sampler.news((topic,)), is_new=False)
         if is_first:
             self._first_steps(time)
-        begun = (k for k in self._nan if not self._is_over(k))
-        self.is_blind = any(True for _ in begun)
-
-    def _is_over(self, k: int) -> bool:
-        """Whether a property has not begun, or is decided."""
-        verdict = self._monitors[k].verdict
-        return verdict is Verdict.NOT_STARTED or verdict.is_permanent
+        self._count(topic)
+        lacking = (self._monitors[k].verdict for k in self._nan)
+        self.is_blind = not all(verdict.is_permanent for verdict in lacking)
 
     def _take(self, time: int, topic: str, values: Values) -> frozenset[str]:
         """Take a message; the names of the signals that may have new samples."""
@@ -191,9 +186,16 @@ class Watching:
         return update.fresh
 
     def _count(self, topic: str) -> None:
-        """Count a message that left; if all has come, the guards are not silent now."""
+        """Count a message that left; if all has come, the guards are not silent now.
+
+        All properties have begun then that wait for no command, unless a value is NaN.
+        """
         if self._sent is None:
-            if not self._unheard and None not in self._awaited.values(self._known):
+            are_stuck = (
+                self._monitors[k].verdict is Verdict.NOT_STARTED for k in self._nan
+            )
+            values = self._awaited.values(self._known)
+            if not (self._unheard or None in values or any(are_stuck)):
                 self._sent = (0,) * len(self._plan.outs)
             return
         counted = zip(self._sent, self._plan.outs, self._plan.most, strict=True)

@@ -48,3 +48,9 @@ class Guard:
     span: Span = field(compare=False)
     asked: tuple[Signal, ...] = field(default=(), compare=False)
     definition: str = field(default="", compare=False)
+
+    @property
+    def text(self) -> str:
+        """It as its author wrote it, on one line."""
+        fallbacks = f" else {', '.join(each.name for each in self.fallbacks)}" if self.fallbacks else ""
+        return f"guard {self.raw} to {self.out}{fallbacks}"

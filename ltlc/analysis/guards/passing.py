@@ -144,7 +144,7 @@ def in_words(guarded: Guarded, letters: Diagram) -> str:
     sort = _simplest(game.diagrams, letters)
     others = (game.diagrams.given({level: not holds}, letters) for level, holds in sort.items())
     is_all = all(other == game.diagrams.false for other in others)
-    words = [condition_text(game.atoms[level], atoms, holds=answer) for level, answer in sort.items()]
+    words = dict.fromkeys(condition_text(game.atoms[level], atoms, holds=answer) for level, answer in sort.items())
     return f"{'' if is_all else ', for example'} where {' and '.join(words) or 'anything holds'}"
 
 

@@ -45,22 +45,26 @@ USUAL_MARGIN = 0.01
 def ask(study: Study) -> Iterator[Finding]:
     """A warning for each such comparison, with the margin to write, where it stands first."""
     uses: dict[str, list[Atom]] = {}
-    for atom in measured_equalities([a for subject in study.subjects for a in subject.specification.atoms]):
+    sent = frozenset(guard.out for guard in study.specification.guards)
+    for atom in measured_equalities([a for subject in study.subjects for a in subject.specification.atoms], sent):
         uses.setdefault(atom.name, []).append(atom)
     for first, *others in uses.values():
         yield _finding(study.specification.source, first, [atom.span for atom in others])
 
 
-def measured_equalities(atoms: Sequence[Atom]) -> list[Atom]:
-    """Those of `atoms` that compare measured numbers for equality without a margin, other than to see a change."""
+def measured_equalities(atoms: Sequence[Atom], sent: frozenset[str] = frozenset()) -> list[Atom]:
+    """Those of `atoms` that compare measured numbers for equality without a margin, other than to see a change.
+
+    Numbers on topics that guards have `sent` on are not measured.
+    """
     exact = [atom for atom in atoms if any(map(_is_exact, nested(atom.condition)))]
     if not exact:
         return []
-    return [atom for atom in exact if any(map(_is_measured, nested(atom.condition)))]
+    return [atom for atom in exact if any(_is_measured(each, sent) for each in nested(atom.condition))]
 
 
-def _is_measured(condition: Condition) -> bool:
-    return _is_exact(condition) and not all(map(_counts, operands(condition)))
+def _is_measured(condition: Condition, sent: frozenset[str]) -> bool:
+    return _is_exact(condition) and not all(_counts(operand, sent) for operand in operands(condition))
 
 
 def _is_exact(condition: Condition) -> bool:
@@ -80,24 +84,26 @@ def is_change(condition: Condition) -> bool:
             return False
 
 
-def _counts(expression: Expression) -> bool:
+def _counts(expression: Expression, sent: frozenset[str]) -> bool:
     """Whether `expression` is exact: a constant, or computed from whole numbers and commands without division."""
     match expression:
         case Number() | Count() | Call(Function.LEN | Function.FLOOR | Function.CEIL | Function.SIGN):
             return True
         case Slice(array) | Element(array):
-            return _counts(array)
+            return _counts(array, sent)
         case Current(signal) | Past(signal, _) | Opening(signal):
             definition = signal.definition
             if isinstance(definition, Field):
-                return definition.message in COMMANDS or definition.numbers.kind is Kind.INTEGER
-            return _counts(definition)
+                is_command = definition.message in COMMANDS or definition.topic in sent
+                return is_command or definition.numbers.kind is Kind.INTEGER
+            return _counts(definition, sent)
         case Negative(operand):
-            return _counts(operand)
+            return _counts(operand, sent)
         case Arithmetic(operator, left, right):
-            return operator is not Operator.OVER and _counts(left) and _counts(right)
+            return operator is not Operator.OVER and _counts(left, sent) and _counts(right, sent)
         case Call(function, arguments):
-            return function.value in ("abs", "min", "max", "sum", "mod") and all(map(_counts, arguments))
+            is_exact = function.value in ("abs", "min", "max", "sum", "mod")
+            return is_exact and all(_counts(argument, sent) for argument in arguments)
         case _:
             return False
 

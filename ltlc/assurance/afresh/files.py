@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import field, replace
+from glob import escape
 from html import unescape
 from pathlib import Path, PurePath
 
@@ -67,18 +68,13 @@ def code_at(path: Path) -> Code:
         return _package_at(path)
     if path.suffix in OF_C:
         beside = [path.with_suffix(suffix) for suffix in OF_C]
-        beside += [each for name in guard_names(path.stem) if (each := path.with_name(name)).exists()]
+        beside += sorted(path.parent.glob(f"{escape(path.stem)}_guard*.[ch]"))
         return Code("c", path.stem, {p.name: _read(p) for p in beside if p.suffix != ".hpp" or p.exists()})
     text = _read(path)
     if path.suffix == ".rs":
         return Code("rust", path.stem, {path.name: text})
     is_node = re.search(r"^def plan\(", text, re.M) is not None
     return Code("ros2" if is_node else "python", path.stem, {path.name: text})
-
-
-def guard_names(stem: str) -> tuple[str, str]:
-    """What the header and the source file of a guard are called."""
-    return f"{stem}_guard.h", f"{stem}_guard.c"
 
 
 def _package_at(folder: Path) -> Code:
@@ -125,8 +121,7 @@ def _emitted(
             texts = (files.header, files.source, files.wrapper)
             found = dict(zip((f"{code.stem}{suffix}" for suffix in OF_C), texts, strict=True))
             if guards:
-                guard = c_guards.emit(files, guards)
-                found |= dict(zip(guard_names(code.stem), (guard.header, guard.source), strict=True))
+                found |= {name: text for guard in c_guards.emit(files, guards) for name, text in guard.texts.items()}
             return found
         case "ament":
             return ament.emit(compiled, specification, (), _metadata(code), guards)
@@ -197,8 +192,8 @@ def compared(code: Code, right: Mapping[str, str]) -> Iterator[tuple[str, Equal 
 
 
 def _compared_c(code: Code, right: Mapping[str, str]) -> Iterator[tuple[str, Equal | Unequal]]:
-    """The header, the source file, which knows its types, what wraps them for C++, and the files of a guard."""
-    header, source, wrapper, *guard = right
+    """The header, the source file, which knows its types, what wraps them for C++, and the files of guards."""
+    header, source, wrapper, *guards = right
     yield header, c_texts.compare(code.texts[header], right[header])
     yield source, c_texts.compare(code.texts[source], right[source], parsed(right[header]).types)
     if wrapper in code.texts:
@@ -206,9 +201,9 @@ def _compared_c(code: Code, right: Mapping[str, str]) -> Iterator[tuple[str, Equ
     else:
         yield wrapper, Equal("", not_compared="the C++ header, which is missing")
     types = parsed(right[header]).types
-    for name in guard:
+    for name in guards:
         if name in code.texts:
             yield name, c_texts.compare(code.texts[name], right[name], types)
-            types = (*types, *parsed(right[name], types).types)
         else:
             yield name, Unequal("it is missing")
+        types = (*types, *parsed(right[name], types).types)

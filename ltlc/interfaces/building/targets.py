@@ -191,24 +191,26 @@ class _C:
         messages: Messages,
         guards: Sequence[GuardProgram],
     ) -> Made:
-        """With the files of a guard. Raises UnfitError."""
+        """With the files of guards. Raises UnfitError."""
         from ltlc.assurance.c_guard import flaw
         from ltlc.backends.c.guards import emit
 
         try:
-            guard = emit(files, guards)
+            emitted = emit(files, guards)
         except NotInTargetError as error:
             message = f"the guard of `{specification.guards[0].out}` cannot be written in C: it has {error}"
             span = specification.guards[0].span
             help = "nothing was written; to emit the monitors alone, build the properties from a file without a guard"
             raise UnfitError([diagnostic("LTL708", specification.source, span, message, help=help)]) from None
-        texts = {self.path.with_name(f"{guard.stem}{end}"): text for end, text in guard.texts.items()}
+        texts = {self.path.with_name(name): text for guard in emitted for name, text in guard.texts.items()}
         return replace(
             made,
             files=lambda: {**made.files(), **texts},
-            note=f"{made.note}; {guard.bound} a call of the guard",
+            note="; ".join(
+                [made.note, *(f"{each.bound} a call of the guard of {' and '.join(each.commands)}" for each in emitted)]
+            ),
             beside=[*texts],
-            flaw=lambda: flaw(files, guard, guards[0], compiled, specification, messages),
+            flaw=lambda: flaw(files, emitted, guards, compiled, specification, messages),
         )
 
 

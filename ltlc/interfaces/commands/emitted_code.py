@@ -8,7 +8,7 @@ from functools import partial
 
 from ltlc import __version__
 from ltlc.assurance.afresh import packages
-from ltlc.assurance.afresh.files import Code, compared, emitted, guard_names
+from ltlc.assurance.afresh.files import Code, compared, emitted
 from ltlc.assurance.afresh.outcomes import Equal, Unequal
 from ltlc.assurance.lowered.equality import compare
 from ltlc.assurance.lowered.letters import Judged
@@ -18,6 +18,7 @@ from ltlc.assurance.reading.files import written
 from ltlc.assurance.reading.outcomes import Difference, ReadBack, Written
 from ltlc.assurance.reading.rust import written as written_in_rust
 from ltlc.backends import rust
+from ltlc.backends.c.guards import endings
 from ltlc.backends.spelling import NotInTargetError
 from ltlc.base.limits import Budget, Exceeded, run_all
 from ltlc.compiler import Compiled
@@ -97,14 +98,22 @@ def _are_read_back(
 
 def _are_guards_read_back(code: Code, compiled: Sequence[Compiled], guards: Sequence[GuardProgram]) -> bool:
     """Say of each guard whether it rests where its region has it; in Python, what was read back has that."""
-    found: Difference | None = None
-    if code.target == "c" and guards:
-        names = (f"{code.stem}.h", f"{code.stem}.c", *guard_names(code.stem))
-        found = difference(Texts(*(code.texts[name] for name in names)), guards[0], compiled)
-    wrong = "" if found is None else f"it does NOT rest as its region has it: {found}"
-    for guard in (guard for program in guards for guard in program.guards):
-        print(f"guard {guard.out}: {wrong or 'where it rests, read back, matches its region'}")
-    return found is None
+    is_right = True
+    ends = endings(guards) if code.target == "c" else [""] * len(guards)
+    for program, end in zip(guards, ends, strict=True):
+        wrong = None
+        if code.target == "c":
+            names = [f"{code.stem}{of}" for of in (".h", ".c", f"{end}.h", f"{end}.c")]
+            wrong = difference(Texts(*(code.texts[name] for name in names)), program, compiled)
+        is_right &= wrong is None
+        said = (
+            f"it does NOT rest as its region has it: {wrong}"
+            if wrong
+            else "where it rests, read back, matches its region"
+        )
+        for guard in program.guards:
+            print(f"guard {guard.out}: {said}")
+    return is_right
 
 
 def _read_back(compiled: Compiled, part: Written | Difference) -> ReadBack | Difference:

@@ -70,7 +70,7 @@ def run(options: argparse.Namespace) -> int:
 def _guard_lines(specification: Specification, guard: Guard) -> Iterator[str]:
     """One guard."""
     yield f"guard of {guard.out}"
-    yield from _indented(guard_words.stated(guard))
+    yield from _indented(guard.text)
     yield ""
     yield from _indented(guard_words.sentences(specification, guard))
     yield ""

@@ -11,8 +11,12 @@ from ltlc.interfaces.commands.common import unusable
 from ltlc.interfaces.commands.progress import saying
 from ltlc.monitoring.guarding.recording import Guarding
 
-WITHOUT = ("evidence", "cut", "engine")
-"""The options that are about a recording as it is, or about other machines."""
+WITHOUT = {
+    "evidence": "it shows what follows from the recording, not from what a guard would have let through",
+    "cut": "an extract has what was recorded, not what a guard would have let through; --output writes that",
+    "engine": "the game that gives reasons stays in this process; --jobs guards several recordings at a time",
+}
+"""The options that are about a recording as it is, or about other machines, and why they do not fit."""
 
 
 def guarding(prepared: Prepared, options: argparse.Namespace) -> Guarding | int:
@@ -25,5 +29,6 @@ def guarding(prepared: Prepared, options: argparse.Namespace) -> Guarding | int:
 
 
 def refused_beside(options: argparse.Namespace) -> str | None:
-    """The option that cannot be combined with `--guard`, if one was given."""
-    return next((f"--{name}" for name in WITHOUT if getattr(options, name)), None)
+    """Why an option cannot be combined with `--guard`, if one was given that cannot."""
+    given = ((f"--{name}", why) for name, why in WITHOUT.items() if getattr(options, name))
+    return next((f"--guard cannot be combined with {name}: {why}" for name, why in given), None)

@@ -97,8 +97,8 @@ def run(options: argparse.Namespace) -> int:
     if options.guard:
         from ltlc.interfaces.commands.guarded import refused_beside
 
-        if other := refused_beside(options):
-            return unusable(f"--guard cannot be combined with {other}")
+        if why := refused_beside(options):
+            return unusable(why)
     if options.watch:
         outputs = (options.report, options.output, options.summary, options.results, options.evidence, options.cut)
         read = [options.specification, *options.recordings, *options.msg_path]

@@ -125,6 +125,7 @@ class JUnit:
             )
             for each in outcome.properties
         ]
+        cases += map(junit.guard_case, outcome.report.get("guard", ()))
         if outcome.error is not None:
             cases.append(unread_case(str(outcome.error["code"]), str(outcome.error["message"])))
         remarks = [*outcome.remarks, *warnings(outcome.report["diagnostics"])]

@@ -123,7 +123,8 @@ class Followed:
         at = [self._at_message(k, plan, before, heard) for k, (plan, before) in standings]
         self.joint = Joint(heard.sent, tuple(at))
         self.is_blind = any(
-            self._lacks(plan) for plan, now in zip(self._of.plans, at, strict=True) if isinstance(now, Place)
+            self._lacks(plan) if isinstance(now, Place) else self._is_stuck(k, plan, now)
+            for k, (plan, now) in enumerate(zip(self._of.plans, at, strict=True))
         )
 
     def _take(self, time: int, topic: str, values: Values) -> frozenset[str]:
@@ -145,8 +146,20 @@ class Followed:
         if sent is not None:
             return self._of.arena.sent_after(sent, topic)[0]
         values = self._of.awaited.values(self._known)
-        is_over = self._of.spoken <= self._heard.keys() and None not in values
+        parts = enumerate(zip(self._of.plans, self.joint.standings, strict=True))
+        is_over = (
+            self._of.spoken <= self._heard.keys()
+            and None not in values
+            and not any(self._is_stuck(k, plan, at) for k, (plan, at) in parts)
+        )
         return self._of.arena.sent_after(None, topic)[1 if is_over else 0]
+
+    def _is_stuck(self, k: int, plan: PartPlan, at: Standing) -> bool:
+        """Whether part k has all that it waits for, and cannot begin, because something that it compares is NaN."""
+        if at is not Outcome.WAITING or not plan.begins_with(self._known):
+            return False
+        opened = self._openings[k]
+        return self._lacks(plan) or (opened is not None and NAN in opened.answers(self._known).values())
 
     def _at_message(self, k: int, plan: PartPlan, at: Standing, heard: _Heard) -> Standing:
         """Where part k is after a message."""

@@ -14,11 +14,11 @@ from ltlc.dataclass import dataclass
 from ltlc.inputs.messages.texts import text_of
 from ltlc.inputs.recordings import Block, Recording
 from ltlc.inputs.recordings.bags import BagRecording
+from ltlc.inputs.recordings.bags.fallbacks import message_of, samples_in
 from ltlc.inputs.recordings.blocks import ROWS, Places, Samples, packed
 from ltlc.inputs.recordings.reading import ReadOptions, kept_name
 from ltlc.inputs.recordings.rows import Column
 from ltlc.monitoring.guarding.arrangement import Arrangement, Solved
-from ltlc.monitoring.guarding.fallbacks import message_of, samples_in
 from ltlc.monitoring.guarding.followed import Followed
 from ltlc.monitoring.guarding.report import Done, GuardReport
 from ltlc.runtime import sampling

@@ -33,8 +33,8 @@ from rosbags.typesys import Stores, get_typestore  # noqa: TID251
 from rosbags.typesys.store import Typestore  # noqa: TID251
 
 from ltlc import __version__
+from ltlc.inputs.recordings.bags.fallbacks import data_of
 from ltlc.inputs.recordings.trails import Trail
-from ltlc.monitoring.guarding.fallbacks import data_of
 from ltlc.monitoring.guarding.report import GuardReport
 from ltlc.monitoring.judging.run import RunReport
 from ltlc.runtime.guard_reports import deed_text

@@ -172,7 +172,8 @@ class RunReport:
         made_of = list(junit.provenance_pairs(self.provenance()))
         if self.session is None:
             return f"{junit.XML_HEAD}{junit.suite_text(self.recording, unread, (), made_of)}"
-        return junit.junit(self.recording, self.session, unread, warnings(self._diagnostics()), made_of)
+        guards = [] if self.guard is None else map(junit.guard_case, self.guard.document(self.session))
+        return junit.junit(self.recording, self.session, [*guards, *unread], warnings(self._diagnostics()), made_of)
 
 
 def warnings(diagnostics: Sequence[Mapping[str, str]]) -> list[str]:

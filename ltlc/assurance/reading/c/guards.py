@@ -94,7 +94,7 @@ class _Read:
             case Asks.SILENT:
                 return self._is(node, "run->is_silent")
             case Asks.SENT:
-                return self._is(node, f"run->sent == {number}u")
+                return self._is(node, f"run->sent[{of}] == {number}u")
             case Asks.WAITS:
                 return self._is(node, f"{self._member(of)}.verdict == {self._not_started}")
             case Asks.STANDS:

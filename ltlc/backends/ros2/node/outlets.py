@@ -17,7 +17,7 @@ from ltlc.backends.ros2.node.options import Options
 from ltlc.backends.ros2.node.recorder import Recorder
 from ltlc.runtime.documents import document, json_line
 from ltlc.runtime.guarding import Deed
-from ltlc.runtime.junit import junit, provenance_pairs
+from ltlc.runtime.junit import guard_case, junit, provenance_pairs
 from ltlc.runtime.properties import Change
 from ltlc.runtime.reports import summary
 from ltlc.runtime.sampling import Value
@@ -109,7 +109,8 @@ class Outlets:
         run = len(self._suites) + 1
         suite = name if run == 1 else f"{name} run {run}"
         made_of = provenance_pairs(self._provenance)
-        return [*self._suites, junit(suite, session, properties=made_of)]
+        guards = [*map(guard_case, self._deeds.document(session).get("guard", ()))]
+        return [*self._suites, junit(suite, session, guards, properties=made_of)]
 
     def close(self) -> None:
         """Wait until all listeners have received the last verdict."""
