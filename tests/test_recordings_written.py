@@ -49,7 +49,7 @@ COLOR = "std_msgs/msg/ColorRGBA"
     ],
 )
 def test_values_are_where_rosbags_reads_them(message: str, values: dict[tuple[str, ...], object]) -> None:
-    found = STORE.deserialize_cdr(written(message, shipped(), nested(values)), message)  # type: ignore[arg-type]
+    found = STORE.deserialize_cdr(written(message, shipped(), nested(values)), message)
     for path, value in values.items():
         at = found
         for name in path:

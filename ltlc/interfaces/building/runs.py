@@ -11,6 +11,7 @@ import io
 import json
 from collections.abc import Mapping, Sequence
 from errno import ENOTDIR
+from functools import cache, partial
 from os import strerror
 from pathlib import Path
 from typing import Any
@@ -196,10 +197,11 @@ def _cell(value: Value) -> str:
 def bag(of: Run[Event], topics: Mapping[str, str], messages: Messages, made_of: Mapping[str, Any]) -> bytes:
     """MCAP with messages on `topics`, which have types; time that passes without one has messages of its own."""
     types = messages.types.messages
+    definition = cache(partial(text_of, types=types))
     sent: list[tuple[Nanoseconds, str, str, Whole]] = []
     for event in of.events:
         topic, content = (event.said.topic, event.said.content) if isinstance(event, Heard) else (TIME, {})
         type_ = topics.get(topic, _EMPTY)
         data = written(type_, types, messages.build(type_, content))
-        sent.append((event.time, topic, type_, Whole(data, text_of(type_, types))))
+        sent.append((event.time, topic, type_, Whole(data, definition(type_))))
     return mcap_of(sent, made_of)

@@ -180,13 +180,11 @@ def _written(messages: list[_Message], provenance: Mapping[str, Any]) -> bytes:
     """`messages`, in CDR, with the definitions of their types, and what they were made of."""
     types = shipped()
     definition = cache(partial(text_of, types=types))
-    whole = (
-        each
-        if isinstance(each.fields, Whole)
-        else each._replace(fields=Whole(written(each.type, types, each.fields), definition(each.type)))
-        for each in messages
-    )
-    return mcap_of(whole, provenance)
+
+    def whole(type_: str, fields: Mapping[str, Any] | Whole) -> Whole:
+        return fields if isinstance(fields, Whole) else Whole(written(type_, types, fields), definition(type_))
+
+    return mcap_of(((time, topic, of, whole(of, fields)) for time, topic, of, fields in messages), provenance)
 
 
 def mcap_of(messages: Iterable[tuple[Nanoseconds, str, str, Whole]], provenance: Mapping[str, Any]) -> bytes:
