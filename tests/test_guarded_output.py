@@ -11,7 +11,7 @@ from rosbags.highlevel import AnyReader  # noqa: TID251
 
 from ltlc.cli import main
 from ltlc.inputs.messages.definitions import shipped
-from ltlc.inputs.recordings.bags.written import written
+from ltlc.inputs.recordings.bags.written import nested, written
 from ltlc.runtime.times import SECOND
 
 NEAR = """guard /cmd_vel_raw to /cmd_vel else stop
@@ -23,7 +23,7 @@ q: always (new speed and min(scan) < 0.5 implies speed <= 0.2)
 """
 SIDEWAYS = made(TWIST, linear__y=0.125)
 FAST = made(TWIST, linear__x=1.0, angular__z=0.7)
-STOP = written(TWIST, shipped(), {("angular", "z"): 0.25})
+STOP = written(TWIST, shipped(), nested({("angular", "z"): 0.25}))
 
 
 def messages_in(path: Path, topic: str) -> list[tuple[int, bytes]]:
@@ -86,7 +86,7 @@ def test_of_a_table_what_left_a_guard_has_the_fields_that_are_read(tmp_path: Pat
     rows = [{"time": 1, "scan": [2]}, {"time": 2, "/cmd_vel_raw/linear/x": 0.5}]
     table = tmp_path / "r.jsonl"
     table.write_text("".join(f"{json.dumps(row)}\n" for row in rows), encoding="utf-8")
-    half = written(TWIST, shipped(), {("linear", "x"): 0.5})
+    half = written(TWIST, shipped(), nested({("linear", "x"): 0.5}))
     assert messages_in(written_output(tmp_path, table), "/cmd_vel") == [(2 * SECOND, half)]
 
 

@@ -11,14 +11,10 @@ import io
 import json
 from collections.abc import Mapping, Sequence
 from errno import ENOTDIR
+from functools import cache, partial
 from os import strerror
 from pathlib import Path
-from typing import Any, assert_never
-
-import numpy as np
-from rosbags.interfaces import Nodetype  # noqa: TID251
-from rosbags.typesys import Stores, get_types_from_msg, get_typestore  # noqa: TID251
-from rosbags.typesys.store import Typestore  # noqa: TID251
+from typing import Any
 
 from ltlc.assurance.coverage import Cover, covering
 from ltlc.assurance.messages import Messages
@@ -30,9 +26,10 @@ from ltlc.base.files import refuse_unwritable, scratch
 from ltlc.base.provenance import provenance
 from ltlc.compiler import Compiled
 from ltlc.dataclass import dataclass
-from ltlc.inputs.messages.definitions import PLACEHOLDER, MessageTypes
+from ltlc.inputs.messages.texts import text_of
+from ltlc.inputs.recordings.bags.written import written
 from ltlc.interfaces.building.targets import Made, UnfitError
-from ltlc.monitoring.judging.output import mcap_of
+from ltlc.monitoring.judging.output import Whole, mcap_of
 from ltlc.monitoring.judging.run import Judge
 from ltlc.program.guards import GuardProgram
 from ltlc.runtime.reports import topic_names
@@ -123,7 +120,6 @@ def _files(
     found: dict[Path, str | bytes] = {}
     expected: list[dict[str, Any]] = []
     judge, made_of = Judge(compiled, specification, finds_all=False), provenance([specification.source])
-    store = get_typestore(Stores.EMPTY)
     names = topic_names([each.specification.label for each in compiled])
     for each, name, cover in zip(compiled, names, covers, strict=True):
         expectation, runs = Expectation(each), []
@@ -132,7 +128,7 @@ def _files(
         for number, of in enumerate(cover.runs, 1):
             files: dict[str, str | bytes] = {
                 f"{name}_{number}.csv": table(of),
-                f"{name}_{number}.mcap": bag(of, topics, messages, store, made_of),
+                f"{name}_{number}.mcap": bag(of, topics, messages, made_of),
             }
             verdict, changes = _expected(expectation, of)
             _check(judge, files, each.specification.label, verdict)
@@ -175,10 +171,6 @@ def _check(judge: Judge, files: Mapping[str, str | bytes], label: str, verdict: 
                 raise WrongRunError(f"{name}: `{label}` is {found.get(label)} instead of {verdict}")
 
 
-_ARRAYS = {"octet": "uint8", "char": "uint8"}
-"""The elements of arrays, where NumPy calls them otherwise."""
-
-
 def table(of: Run[Event]) -> str:
     """CSV with a column for each signal that is read from messages; a row is a message, or a time without one."""
     heard = [event for event in of.events if isinstance(event, Heard)]
@@ -202,52 +194,14 @@ def _cell(value: Value) -> str:
             return str(value)
 
 
-def bag(
-    of: Run[Event], topics: Mapping[str, str], messages: Messages, store: Typestore, made_of: Mapping[str, Any]
-) -> bytes:
-    """MCAP with messages on `topics`, which have types; time that passes without one has messages of its own.
-
-    Types are made known to `store`, which knows those of the runs before.
-    """
-    for name in (*topics.values(), _EMPTY):
-        _define(store, name, messages.types)
-    sent: list[tuple[Nanoseconds, str, str, Any]] = []
+def bag(of: Run[Event], topics: Mapping[str, str], messages: Messages, made_of: Mapping[str, Any]) -> bytes:
+    """MCAP with messages on `topics`, which have types; time that passes without one has messages of its own."""
+    types = messages.types.messages
+    definition = cache(partial(text_of, types=types))
+    sent: list[tuple[Nanoseconds, str, str, Whole]] = []
     for event in of.events:
         topic, content = (event.said.topic, event.said.content) if isinstance(event, Heard) else (TIME, {})
         type_ = topics.get(topic, _EMPTY)
-        sent.append((event.time, topic, type_, _typed(store, type_, messages.build(type_, content))))
-    return mcap_of(sent, store, made_of)
-
-
-def _define(store: Typestore, name: str, types: MessageTypes) -> None:
-    """Make a type and its parts known to `store`."""
-    if name in store.fielddefs:
-        return
-    parts = types.messages[name].fields
-    for part in parts.values():
-        if part.base in types.messages:
-            _define(store, part.base, types)
-    text = "".join(f"{type_} {field}\n" for field, type_ in parts.items() if field != PLACEHOLDER)
-    store.register(get_types_from_msg(text, name))
-
-
-def _typed(store: Typestore, name: str, message: Any) -> Any:
-    """A message of rosbags' classes, with the fields of `message`."""
-    found = store.get_msgdef(name).fields
-    values = {field: _value(store, kind, content, getattr(message, field, 0)) for field, (kind, content, *_) in found}
-    return store.types[name](**values)
-
-
-def _value(store: Typestore, kind: Nodetype, content: Any, value: Any) -> Any:
-    match kind:
-        case Nodetype.NAME:
-            return _typed(store, content, value)
-        case Nodetype.BASE:
-            return value[0] if isinstance(value, bytes) else value
-        case Nodetype.ARRAY | Nodetype.SEQUENCE:
-            (of, base), _ = content
-            if of == Nodetype.BASE and base[0] not in ("string", "wstring"):
-                return np.array([_value(store, of, base, each) for each in value], _ARRAYS.get(base[0], base[0]))
-            return [_value(store, of, base, each) for each in value]
-        case _:
-            assert_never(kind)
+        data = written(type_, types, messages.build(type_, content))
+        sent.append((event.time, topic, type_, Whole(data, definition(type_))))
+    return mcap_of(sent, made_of)

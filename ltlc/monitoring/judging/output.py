@@ -26,14 +26,16 @@ from __future__ import annotations
 import io
 import json
 from collections.abc import Iterable, Iterator, Mapping
+from functools import cache, partial
 from typing import Any, NamedTuple
 
 from mcap.writer import Writer
-from rosbags.typesys import Stores, get_typestore  # noqa: TID251
-from rosbags.typesys.store import Typestore  # noqa: TID251
 
 from ltlc import __version__
+from ltlc.inputs.messages.definitions import shipped
+from ltlc.inputs.messages.texts import text_of
 from ltlc.inputs.recordings.bags.fallbacks import data_of
+from ltlc.inputs.recordings.bags.written import written
 from ltlc.inputs.recordings.trails import Trail
 from ltlc.monitoring.guarding.report import GuardReport
 from ltlc.monitoring.judging.run import RunReport
@@ -135,7 +137,9 @@ def _status(time: Nanoseconds, level: int, name: str, message: str, values: Iter
         "hardware_id": "ltlc",
         "values": [{"key": key, "value": value} for key, value in values],
     }
-    return _Message(time, "/diagnostics", "diagnostic_msgs/msg/DiagnosticArray", {"status": [status]})
+    stamp = {"sec": time // SECOND, "nanosec": time % SECOND}
+    said = {"header": {"stamp": stamp}, "status": [status]}
+    return _Message(time, "/diagnostics", "diagnostic_msgs/msg/DiagnosticArray", said)
 
 
 def _verdict(time: Nanoseconds, track: Track, name: str, verdict: Verdict, remarks: list[str]) -> Iterator[_Message]:
@@ -174,44 +178,28 @@ def _ends(session: Session) -> tuple[Nanoseconds, Nanoseconds]:
 
 def _written(messages: list[_Message], provenance: Mapping[str, Any]) -> bytes:
     """`messages`, in CDR, with the definitions of their types, and what they were made of."""
-    store = get_typestore(Stores.ROS2_JAZZY)
-    typed = (
-        (time, topic, type_, fields if isinstance(fields, Whole) else _message(store.types, type_, fields, time))
-        for time, topic, type_, fields in messages
-    )
-    return mcap_of(typed, store, provenance)
+    types = shipped()
+    definition = cache(partial(text_of, types=types))
+
+    def whole(type_: str, fields: Mapping[str, Any] | Whole) -> Whole:
+        return fields if isinstance(fields, Whole) else Whole(written(type_, types, fields), definition(type_))
+
+    return mcap_of(((time, topic, of, whole(of, fields)) for time, topic, of, fields in messages), provenance)
 
 
-def mcap_of(
-    messages: Iterable[tuple[Nanoseconds, str, str, Any]], store: Typestore, provenance: Mapping[str, Any]
-) -> bytes:
-    """A file of messages, each with its time, topic, type, and itself, or it whole; `store` defines the others."""
+def mcap_of(messages: Iterable[tuple[Nanoseconds, str, str, Whole]], provenance: Mapping[str, Any]) -> bytes:
+    """A file of messages, each with its time, topic and type."""
     file = io.BytesIO()
     writer = Writer(file)
     writer.start(profile="ros2", library=f"ltlc {__version__}")
     schemas: dict[tuple[str, str], int] = {}
     channels: dict[str, int] = {}
-    for sequence, (time, topic, type_, message) in enumerate(messages):
-        given = message.definition if isinstance(message, Whole) else ""
-        if (type_, given) not in schemas:
-            definition = given or store.generate_msgdef(type_, ros_version=2)[0]
-            schemas[type_, given] = writer.register_schema(type_, "ros2msg", definition.encode())
+    for sequence, (time, topic, type_, (data, definition)) in enumerate(messages):
+        if (type_, definition) not in schemas:
+            schemas[type_, definition] = writer.register_schema(type_, "ros2msg", definition.encode())
         if topic not in channels:
-            channels[topic] = writer.register_channel(topic, "cdr", schemas[type_, given])
-        data = message.data if isinstance(message, Whole) else bytes(store.serialize_cdr(message, type_))
+            channels[topic] = writer.register_channel(topic, "cdr", schemas[type_, definition])
         writer.add_message(channels[topic], time, data, time, sequence)
     writer.add_metadata("ltlc", {"provenance": json.dumps(provenance)})
     writer.finish()
     return file.getvalue()
-
-
-def _message(types: Mapping[str, Any], type_: str, fields: Mapping[str, Any], time: Nanoseconds) -> Any:
-    """A message of rosbags' classes."""
-    if type_ != "diagnostic_msgs/msg/DiagnosticArray":
-        return types[type_](**fields)
-    stamp = types["builtin_interfaces/msg/Time"](sec=time // SECOND, nanosec=time % SECOND)
-    statuses = []
-    for status in fields["status"]:
-        values = [types["diagnostic_msgs/msg/KeyValue"](**value) for value in status["values"]]
-        statuses.append(types["diagnostic_msgs/msg/DiagnosticStatus"](**{**status, "values": values}))
-    return types[type_](header=types["std_msgs/msg/Header"](stamp=stamp, frame_id=""), status=statuses)

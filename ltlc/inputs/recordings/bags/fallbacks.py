@@ -9,7 +9,7 @@ from ltlc.inputs.messages.texts import defined
 from ltlc.inputs.recordings.bags.definitions import Defined
 from ltlc.inputs.recordings.bags.messages import batch_of
 from ltlc.inputs.recordings.bags.plan import TopicReader
-from ltlc.inputs.recordings.bags.written import written
+from ltlc.inputs.recordings.bags.written import nested, written
 from ltlc.inputs.recordings.blocks import Block
 from ltlc.runtime.sampling import Value
 from ltlc.specification.expressions import Field, Signal
@@ -19,7 +19,7 @@ from ltlc.specification.guards import Fallback, Guard
 def data_of(fallback: Fallback, guard: Guard, definition: str) -> bytes:
     """`fallback`, which `guard` may send, in CDR; its type is defined by the text `definition`."""
     types = defined(guard.message, "ros2msg", definition)
-    return written(guard.message, types, {path: constant.value for path, constant in fallback.values.items()})
+    return written(guard.message, types, nested({path: each.value for path, each in fallback.values.items()}))
 
 
 def message_of(guard: Guard, values: Mapping[Signal, Value]) -> bytes:
@@ -30,7 +30,7 @@ def message_of(guard: Guard, values: Mapping[Signal, Value]) -> bytes:
         for path, value in fields
         if path and not isinstance(value, tuple) and all(isinstance(step, str) for step in path)
     }
-    return written(guard.message, defined(guard.message, "ros2msg", guard.definition), single)
+    return written(guard.message, defined(guard.message, "ros2msg", guard.definition), nested(single))
 
 
 def samples_in(fallback: Fallback, guard: Guard, signals: Mapping[str, Signal]) -> dict[str, Value]:
