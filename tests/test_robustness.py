@@ -135,11 +135,13 @@ def test_a_run_that_was_stepped_cannot_be_measured() -> None:
         _ = monitor.finish().robustness
 
 
-LIVE = """
+DECLARED = """
 decl speed /speed std_msgs/Float64.data
 decl armed /armed std_msgs/Bool.data
 decl count /count std_msgs/Int32.data
+"""
 
+LIVE = f"""{DECLARED}
 slow:  never speed > 2
 soon:  eventually speed > 1 within 2 s
 later: eventually speed > 1 within [1 s, 2 s]
@@ -179,6 +181,15 @@ def test_a_run_that_goes_on_has_what_its_robustness_can_still_be() -> None:
     assert live.robustness["each_"].reason == "`each`: every id or message has a run of its own"
     live.reset()
     assert possible(live)["slow"] == anything
+
+
+def test_what_comes_after_a_timeout_changes_nothing() -> None:
+    live = ltlc.monitor(f"{DECLARED}_timeout_ = 2 s\nslow: never speed > 2", robustness=True)
+    live.step({"speed": 0.5}, time=0)
+    live.step({"speed": 1.0}, time=2)
+    assert possible(live) == {"slow": (-math.inf, 1.0)}
+    live.step({"speed": 5.0}, time=3)
+    assert possible(live) == {"slow": (1.0, 1.0)}
 
 
 def test_nothing_is_kept_of_a_run_whose_robustness_was_not_asked_for() -> None:

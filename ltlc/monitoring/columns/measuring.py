@@ -208,5 +208,5 @@ class Measuring:
         """What is still possible of all properties by label, in a run that has got to `end`, and is not over."""
         if self._session.paces is not None:
             return dict.fromkeys(self._gathered, Band(reason="ticks"))
-        began = end if self._began is None else self._began
-        return {label: gathered.band(began, end) for label, gathered in self._gathered.items()}
+        began, until = end if self._began is None else self._began, min(end, self._session.end)
+        return {label: gathered.band(began, until) for label, gathered in self._gathered.items()}
