@@ -87,8 +87,11 @@ class _Bench:
         assert report.session is not None
         verdicts = {track.property.label: track.verdict for track in report.session.tracks}
         self.unmeasured |= {label: curve.reason for label, curve in report.robustness.items() if curve.reason}
-        wholes = {label: curve.whole for label, curve in report.robustness.items() if not curve.reason}
-        margins = {label: math.inf if whole is None else whole for label, whole in wholes.items()}
+        margins = {
+            label: report.bands[label].high if label in report.bands else math.inf
+            for label, curve in report.robustness.items()
+            if not curve.reason
+        }
         kept = report if is_violated(report) else None
         return Simulated(self.count, assignment, "", verdicts, margins, kept)
 

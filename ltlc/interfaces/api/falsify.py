@@ -129,6 +129,7 @@ class _Simulator:
             remarks=prepared.late,
             finds_all=False,
             measures=True,
+            foresees=True,
         )
         self.runs: dict[str, Run] = {}
 

@@ -116,6 +116,7 @@ def _judge(prepared: Prepared, options: argparse.Namespace) -> Judge:
         hashed=False,
         finds_all=False,
         measures=True,
+        foresees=True,
     )
 
 

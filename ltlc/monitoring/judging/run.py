@@ -43,7 +43,7 @@ from ltlc.specification.specification import PropertySpecification, Specificatio
 
 if TYPE_CHECKING:
     from ltlc.assurance.evidence.document import Document
-    from ltlc.monitoring.columns.measuring import Curve, Measuring
+    from ltlc.monitoring.columns.measuring import Band, Curve, Measuring
     from ltlc.monitoring.guarding.recording import GuardedRecording, Guarding
     from ltlc.monitoring.guarding.report import GuardReport
     from ltlc.monitoring.judging.cutting import Cut, Cutting
@@ -83,6 +83,7 @@ class RunReport:
     cut: Cut | None = None
     guard: GuardReport | None = None
     robustness: Mapping[str, Curve] = field(default_factory=dict)
+    bands: Mapping[str, Band] = field(default_factory=dict)
 
     @property
     def exit_code(self) -> int:
@@ -230,7 +231,8 @@ class Judge:
     and stand in each report before those on the recording. It `finds_all` violations of a property, or the first one.
     The documents of its reports have the SHA-256 of the recording if it is `hashed`, which takes a moment.
     With `evidence` a report has that of its recording. With `cutting`, extracts of recordings are written. With
-    `guarding`, what is judged is what guards let through. If it `measures`, reports say by how much properties hold.
+    `guarding`, what is judged is what guards let through. If it `measures`, reports say by how much properties hold; if
+    it `foresees`, too, what that could still come to, whatever follows.
     """
 
     compiled: Sequence[Compiled]
@@ -246,6 +248,7 @@ class Judge:
     cutting: Cutting | None = None
     guarding: Guarding | None = None
     measures: bool = False
+    foresees: bool = False
 
     def prepare(self) -> None:
         """Make what takes other processes, before several of them judge by copies."""
@@ -282,6 +285,7 @@ class Judge:
         trails = tuple(t.observer.trail for t in session.tracks if isinstance(t.observer, Trailing))
         if damage is not None:
             found.append(damage)
+        end = session.time if part.until is None else part.until
         judged = None if damage is not None and session.time is None else blocks
         evidence = None
         if self.evidence is not None and digests is not None and damage is None:
@@ -302,9 +306,8 @@ class Judge:
             evidence=evidence,
             cut=None if judged is None or self.cutting is None else self.cutting.cut(session, path, name),
             guard=None if guarded is None else guarded.report(part.since, part.until),
-            robustness={}
-            if measuring is None
-            else measuring.curves(session.time if part.until is None else part.until),
+            robustness={} if measuring is None else measuring.curves(end),
+            bands={} if measuring is None or not self.foresees or end is None else measuring.bands(end),
             **self._made_of(path),
         )
 
