@@ -214,6 +214,25 @@ def test_inputs_change_at_their_control_points_and_are_shrunk_in_time() -> None:
     assert ltlc.run(SLOW, simulate(found.parameters)).violations
 
 
+def test_runs_that_violate_by_their_inputs_are_tried_first() -> None:
+    text = f"{DECLARATIONS}handshake: after v > 0.95, after v < 0.02, after v > 0.97, never v < 0.01"
+
+    def simulate(given: Mapping[str, Any]) -> Rows:
+        return [
+            (k / 10, {"v": [value for time, value in given["v"] if time <= k / 10][-1]})
+            for k in range(round(given["seconds"] * 10))
+        ]
+
+    found = ltlc.falsify(text, simulate, inputs=["v=0..1@8"], seconds=4, simulations=20)
+    assert found.violated == "handshake"
+    assert found.document()["found"]["simulation"] == 2
+
+
+def test_runs_of_signals_that_are_no_inputs_are_no_beginning() -> None:
+    found = ltlc.falsify(SLOW, lambda _: constant(v=0), inputs=["push=0..1@8"], seconds=4, simulations=2)
+    assert found.exit_code == 0
+
+
 SPACE = space_of(["a=0..1", "n:int=0..20", "floor=dry,wet,ice"], ["u=-1..1@6"], 10.0)
 
 

@@ -44,6 +44,11 @@ def at(course: Course, time: float) -> Scalar:
     return next(value for since, value in reversed(course) if since <= time)
 
 
+def merged(course: Course) -> Course:
+    """The same, without control points at which nothing changes."""
+    return tuple(step for n, step in enumerate(course) if not n or course[n - 1][1] != step[1])
+
+
 def text_of(value: Scalar | Course) -> str:
     """A value for people: of an input, after `@`, from which second on it has the next one."""
     if not isinstance(value, tuple):

@@ -9,7 +9,7 @@ from decimal import Decimal
 from itertools import product
 
 from ltlc.dataclass import dataclass
-from ltlc.falsification.assignment import Assignment, Course, Scalar, at
+from ltlc.falsification.assignment import Assignment, Course, Scalar, at, merged
 
 RESERVED = ("parameters", "recording", "seconds")
 """What a command gets by these names is something else."""
@@ -146,8 +146,7 @@ class Space:
             if not each.points:
                 values[each.name] = each.domain.at(next(numbers))
             else:
-                course = [(time, each.domain.at(next(numbers))) for time in self.times(each)]
-                values[each.name] = tuple(step for n, step in enumerate(course) if not n or course[n - 1][1] != step[1])
+                values[each.name] = merged(tuple((time, each.domain.at(next(numbers))) for time in self.times(each)))
         return Assignment(values, self.seconds)
 
     def all(self) -> Iterator[Assignment]:

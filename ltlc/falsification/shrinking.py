@@ -8,7 +8,7 @@ from dataclasses import replace
 from decimal import ROUND_CEILING, ROUND_DOWN, ROUND_HALF_EVEN, Context, Decimal
 from typing import Protocol, TypeVar
 
-from ltlc.falsification.assignment import Assignment, Course, Scalar
+from ltlc.falsification.assignment import Assignment, Course, Scalar, merged
 from ltlc.falsification.parameters import Choices, Domain, Integers, Parameter, Reals, Space
 
 MOST_DIGITS = 4
@@ -112,12 +112,7 @@ def _shorter(course: Course, default: Scalar) -> Iterator[Course]:
             if rest and rest != course:
                 yield ((0.0, rest[0][1]), *rest[1:])
             part = tuple((time, default) for time, _ in course[start : start + count])
-            yield _merged((*course[:start], *part, *course[start + count :]))
-
-
-def _merged(course: Course) -> Course:
-    """The same, without control points at which nothing changes."""
-    return tuple(step for n, step in enumerate(course) if not n or course[n - 1][1] != step[1])
+            yield merged((*course[:start], *part, *course[start + count :]))
 
 
 def _cut(assignment: Assignment, ended: float) -> Iterator[Assignment]:

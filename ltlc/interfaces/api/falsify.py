@@ -13,6 +13,7 @@ from ltlc.base.limits import Budget
 from ltlc.dataclass import dataclass
 from ltlc.falsification import report
 from ltlc.falsification.assignment import Assignment
+from ltlc.falsification.examples import examples
 from ltlc.falsification.falsify import Falsification
 from ltlc.falsification.falsify import falsify as search
 from ltlc.falsification.parameters import space_of
@@ -105,7 +106,8 @@ def falsify(
     prepared = prepare(read(specification), paths, encoding_of(encoding), budget or Budget())
     simulator = _Simulator(prepared, ReadOptions(message_paths=tuple(paths)), simulate)
     try:
-        made = search(simulator, space, simulations, seed)
+        begin = examples(prepared.specification, encoding_of(encoding), space, prepared.budget)
+        made = search(simulator, space, simulations, seed, begin)
     except SimulationError as error:
         raise UnusableInput((), f"the first simulation, with all defaults, failed: {error}") from error.__cause__
     return Falsified(made, prepared, simulator.runs)

@@ -8,11 +8,13 @@ import shutil
 import sys
 from pathlib import Path
 
+from ltlc.automata import Budget
 from ltlc.base.files import scratch
 from ltlc.falsification import keeping
 from ltlc.falsification import report as reports
 from ltlc.falsification.assignment import Assignment
 from ltlc.falsification.command import Command, command_of
+from ltlc.falsification.examples import examples
 from ltlc.falsification.falsify import Falsification, Watch, falsify
 from ltlc.falsification.parameters import space_of
 from ltlc.falsification.simulation import Simulated, SimulationError, is_violated, whole
@@ -22,6 +24,7 @@ from ltlc.interfaces.api.prepare import Prepared
 from ltlc.interfaces.commands import arguments
 from ltlc.interfaces.commands.common import compile_file, report, unusable, unwritable, without_notes
 from ltlc.monitoring.judging.run import Judge, RunReport
+from ltlc.semantics.encodings import ENCODINGS
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -99,7 +102,8 @@ def run(options: argparse.Namespace) -> int:
     with scratch() as folder:
         simulations = _Simulations(command, _judge(prepared, options), folder)
         try:
-            found = falsify(simulations, space, options.simulations, options.seed, (), _watch(options))
+            begin = examples(prepared.specification, ENCODINGS[options.encoding], space, Budget(*options.budget))
+            found = falsify(simulations, space, options.simulations, options.seed, begin, _watch(options))
         except SimulationError as error:
             return unusable(f"the first simulation, with all defaults, failed: {error}")
         return _told(found, prepared, simulations, options)
