@@ -175,6 +175,15 @@ def re_lines(text: str) -> dict[str, str]:
     return {label: told.rpartition("; ")[2] for label, _, told in lines}
 
 
+def test_what_a_run_leaves_open_at_its_end_does_not_guide() -> None:
+    text = f"{DECLARATIONS}answers: always (v > 1 implies eventually w > 1 within 5 s)"
+    rows: Rows = [(0.0, {"v": 2, "w": 0}), (1.0, {"v": 0, "w": 1.25}), (2.0, {"v": 3, "w": 0})]
+    found = ltlc.falsify(text, lambda _: rows, ["gain=0..1"], simulations=3)
+    [answers] = found.document()["properties"]
+    assert answers["closest"]["margin"] == 0.25
+    assert found.exit_code == 3
+
+
 def test_a_simulation_that_does_not_repeat_itself_is_not_shrunk() -> None:
     speeds = iter([0, 3, *[0] * 100])
     found = ltlc.falsify(SLOW, lambda _: constant(v=next(speeds)), ["gain=0..1"], simulations=10)

@@ -25,9 +25,9 @@ Simulate = Callable[[Assignment], RunReport]
 class Simulated:
     """A simulation: its number, from 1 on, what it was given, and what came of it.
 
-    It has `verdicts` and `margins` by property, the latter being the most that is still possible: what a run leaves open at
-    its end counts as met. They are infinite where no comparison decides, and missing where the property cannot be measured. Or it failed,
-    as `failure` says. The `report` is there if a property is violated.
+    It has `verdicts` and `margins` by property. The latter are the most that is still possible: what a run leaves open
+    at its end counts as met. They are infinite where no comparison decides, and missing where the property cannot be
+    measured. Or it failed, as `failure` says. The `report` is there if a property is violated.
     """
 
     number: int
