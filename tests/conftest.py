@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 from effort import ASKED, SHARE, limit_examples
 from hypothesis import HealthCheck, settings
+from in_process import in_process
 from quick_gate import quick_gate
 from ros_support import Network, Send, own_domain
 
@@ -146,9 +147,9 @@ def translated_once() -> Iterator[None]:
 
 
 @pytest.fixture(scope="session", autouse=True)
-def one_child() -> Iterator[None]:
-    """What is done in children is done by one: other processes run tests beside, and a fork of one so large is slow."""
-    with pytest.MonkeyPatch.context() as patch:
+def few_children() -> Iterator[None]:
+    """What is done in children is done by one, or here: other processes run tests beside, and forks are slow."""
+    with pytest.MonkeyPatch.context() as patch, in_process():
         patch.setattr(children, "_cpus", lambda: 1)
         yield
 

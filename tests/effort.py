@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeVar
 from unittest.mock import patch
 
 from hypothesis import settings
 
 from ltlc.assurance import courses, many_traffic, timed_program, traffic, walks
 
-SHARE = 0.4
+T = TypeVar("T")
+
+SHARE = 0.2
 """By default; what tests say that they draw is a share of 1."""
 
 
@@ -32,10 +34,21 @@ def share_of(number: int) -> int:
     return max(1, math.ceil(number * ASKED.share))
 
 
+def some_of(items: Iterable[T], number: int) -> list[T]:
+    """The share of `items`: every so many, from another one on for each `number` of a case."""
+    step = max(1, round(1 / ASKED.share))
+    return list(items)[number % step :: step]
+
+
+LEAST_EXAMPLES = 10
+"""Of fewer, hypothesis makes hardly more than the simplest."""
+
+
 def limit_examples(function: Any) -> None:
     """Let hypothesis draw the share of its examples for a function that is a test."""
     if (said := getattr(function, _SETTINGS, None)) is not None:
-        setattr(function, _SETTINGS, settings(said, max_examples=share_of(said.max_examples)))
+        number = max(share_of(said.max_examples), min(said.max_examples, LEAST_EXAMPLES))
+        setattr(function, _SETTINGS, settings(said, max_examples=number))
 
 
 _SETTINGS = "_hypothesis_internal_use_settings"  # which hypothesis's own plugin for pytest reads, too

@@ -11,7 +11,7 @@ from math import nan
 from typing import ClassVar
 
 import pytest
-from effort import share_of
+from effort import share_of, some_of
 from guarding import programs
 
 from benchmarks.guarded import CMD, EXAMPLES, SCAN, Driven
@@ -30,12 +30,12 @@ from ltlc.runtime.session import Plan
 from ltlc.runtime.watching import Watching
 
 
-@pytest.mark.parametrize("name", EXAMPLES)
-def test_a_program_rests_where_its_region_does_and_nowhere_else(name: str) -> None:
+@pytest.mark.parametrize(("number", "name"), [*enumerate(EXAMPLES)], ids=[*EXAMPLES])
+def test_a_program_rests_where_its_region_does_and_nowhere_else(number: int, name: str) -> None:
     _, compiled, entries, guards = programs(EXAMPLES[name].text)
     for program, entry in zip(guards, entries, strict=True):
         assert difference(program, entry, compiled) is None
-        for wrong in mutants(program.resting):
+        for wrong in some_of(mutants(program.resting), number):
             assert difference(replace(program, resting=wrong), entry, compiled) is not None, wrong
 
 
@@ -61,8 +61,8 @@ def mutants(resting: Resting) -> Iterator[Resting]:
         yield replace(resting, conditions=tuple(conditions))
 
 
-@pytest.mark.parametrize("name", EXAMPLES)
-def test_what_a_plan_says_of_a_guard_is_read_back(name: str) -> None:
+@pytest.mark.parametrize(("number", "name"), [*enumerate(EXAMPLES)], ids=[*EXAMPLES])
+def test_what_a_plan_says_of_a_guard_is_read_back(number: int, name: str) -> None:
     specification, compiled, _, guards = programs(EXAMPLES[name].text)
     code = ros2.emit(compiled, specification, guards)
     of = [each.machine for each in compiled], [each.specification for each in compiled]
@@ -70,8 +70,13 @@ def test_what_a_plan_says_of_a_guard_is_read_back(name: str) -> None:
         not isinstance(each, Difference) and isinstance(each.read_back(), ReadBack)
         for each in written(code, *of, guards)
     )
-    for old, new in faults(code):
+    found = [*faults(code)]
+    for old, new in [*some_of(found, number), *(each for each in found if RARE in each[0])]:
         assert isinstance(written(code.replace(old, new), *of, guards)[0], Difference), (old, new)
+
+
+RARE = "Asks.KNOWN"
+"""What few plans have."""
 
 
 def faults(code: str) -> Iterator[tuple[str, str]]:
