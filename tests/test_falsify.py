@@ -176,7 +176,7 @@ def re_lines(text: str) -> dict[str, str]:
 
 
 def test_what_a_run_leaves_open_at_its_end_does_not_guide() -> None:
-    text = f"{DECLARATIONS}answers: always (v > 1 implies eventually w > 1 within 5 s)"
+    text = f"{DECLARATIONS}answers: always (v > 1 implies eventually w > 1 within 1 s)"
     rows: Rows = [(0.0, {"v": 2, "w": 0}), (1.0, {"v": 0, "w": 1.25}), (2.0, {"v": 3, "w": 0})]
     found = ltlc.falsify(text, lambda _: rows, ["gain=0..1"], simulations=3)
     [answers] = found.document()["properties"]
