@@ -137,6 +137,14 @@ def test_ticks_of_what_waits_for_a_sample_do_not_begin_with_the_session(tmp_path
     assert refusals(document, text, bag) == []
 
 
+def test_an_age_that_the_monitor_ignores_is_in_the_letters_nevertheless(tmp_path: Path) -> None:
+    text = specification(["after_until new x, new x, age(x) <= 0.3 s"], "_timeout_ = 3 s\n")
+    bag = bag_of(tmp_path, rows("/x", 1.0, 2.0, -1.0))
+    document = evidence_of(text, bag)
+    assert [each.name for each in only(document).atoms] == ["new x", "message on x"]
+    assert refusals(document, text, bag) == []
+
+
 def test_a_bag_of_which_rosbags_finds_no_messages_is_not_covered_by_the_reader(tmp_path: Path) -> None:
     sent = [Sent(topic, TYPES[topic], time, message) for time, topic, message in rows("/x", 1.0, 3.0)]
     bag = FORMS["mcap with chunk index"](tmp_path, sent)

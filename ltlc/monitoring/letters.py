@@ -102,7 +102,7 @@ class Letters:
             now &= ~messages
             while self._pending and self._pending[-1][0] == time:
                 now |= self._pending.pop()[1]
-        elif now & messages:
+        elif now & messages and self._pending and self._pending[-1][0] == time:  # no monitor is told of ages it ignores
             self._pending.pop()
         self._flush()
         self._add_one(time, now, is_step=True)
