@@ -125,14 +125,14 @@ def test_build_leaves_its_output_and_nothing_else(folder: Path) -> None:
     assert sorted(path.name for path in folder.iterdir()) == ["props.txt", "props_monitor.py"]
 
 
-@pytest.mark.parametrize("option", ["-o", "--certificate"])
+@pytest.mark.parametrize("options", [["-o"], ["--certificate"], ["--target", "c", "-o"]])
 @pytest.mark.parametrize("path", ["no/such/folder.py", ".", "fifo"])
 def test_what_cannot_be_written_is_said_before_any_work(
-    folder: Path, capsys: Any, monkeypatch: pytest.MonkeyPatch, option: str, path: str
+    folder: Path, capsys: Any, monkeypatch: pytest.MonkeyPatch, options: list[str], path: str
 ) -> None:
     os.mkfifo(folder / "fifo")
     monkeypatch.setattr("ltlc.interfaces.commands.build.compile_file", lambda *_, **__: pytest.fail("work was done"))
-    assert main(["build", "props.txt", option, path]) == 2
+    assert main(["build", "props.txt", *options, path]) == 2
     assert f"{path} cannot be written: " in capsys.readouterr().err
     assert sorted(each.name for each in folder.iterdir()) == ["fifo", "props.txt"]
 

@@ -148,7 +148,7 @@ class _C:
 
     @property
     def told(self) -> Sequence[Path]:
-        return [self.path, *(self.path.with_suffix(suffix) for suffix in (".h", ".hpp"))]
+        return [self.path, *(self.path.parent / f"{self.path.stem}{suffix}" for suffix in (".h", ".hpp"))]
 
     def refuse(self) -> None:
         if self.path.suffix != ".c":
