@@ -87,7 +87,7 @@ def command_of(text: str, space: Space, time_limit: Nanoseconds) -> Command:
         if name in inputs:
             raise ValueError(f"`{{{name}}}` is an input, whose values over time are in the file {{parameters}}")
         hint = did_you_mean(name, known) or f"there are {', '.join(f'{{{each}}}' for each in sorted(known))}"
-        raise ValueError(f"there is no parameter for `{{{name}}}`: {hint}; write {{{{ for a brace")
+        raise ValueError(f"there is no parameter for `{{{name}}}` (a brace is written {{{{): {hint}")
     if "recording" not in used:
         raise ValueError("the command does not get {recording}, the path without an ending of what it has to write")
     wanted = [each.name for each in space.parameters] + ([] if space.seconds is None else ["seconds"])
