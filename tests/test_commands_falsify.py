@@ -128,7 +128,7 @@ def test_where_nothing_is_found_nothing_is_kept(falsify: Falsify, capsys: Said) 
         ("sim '{gain} {recording}", "the command cannot be read: no closing quotation"),
         ("sim {gain}", "the command does not get {recording}"),
         ("sim {recording}", "the command does not get `gain`: add {gain} or {parameters}"),
-        ("sim {gian} {recording}", "there is no parameter for `{gian}`: did you mean `gain`?"),
+        ("sim {gian} {recording}", "there is no parameter for `{gian}` (a brace is written {{): did you mean `gain`?"),
         ("sim {gain} {seconds} {recording}", "there is no parameter for `{seconds}`"),
     ],
 )
