@@ -102,7 +102,7 @@ def pattern(line: str) -> str:
     return "(?s:.*)" if line == "…" else re.escape(line).replace("…", ".*") + "\n"
 
 
-@pytest.mark.parametrize("page", ["tutorial", "matrix", "evidence", "guard", "import", "robustness", "falsify"])
+@pytest.mark.parametrize("page", ["tutorial", "matrix", "evidence", "guard", "import", "robustness", "falsify", "mine"])
 def test_a_page_prints_what_it_shows(page: str, tmp_path: Path) -> None:
     (tmp_path / "examples").symlink_to(ROOT / "examples")
     for language, listing in listings(f"docs/{page}.md"):

@@ -33,15 +33,17 @@ from ltlc.monitoring.mining.search import Search
 from ltlc.monitoring.mining.template import load
 from ltlc.monitoring.mining.values import values
 from ltlc.semantics import properties as p
+from ltlc.semantics import robustness
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.denotation import satisfies
 from ltlc.semantics.encodings import EPISODE, encode
 from ltlc.semantics.instants import Instant, with_past
 from ltlc.semantics.timed_atoms import PastAtom, timed_atoms
 from ltlc.specification import expressions as e
+from ltlc.specification import margins as margins_of
 from ltlc.specification.atoms import Atom
 from ltlc.specification.evaluation import is_true
-from ltlc.specification.expressions import Comparison, IsTrue, Relation
+from ltlc.specification.expressions import Comparison, Input, IsTrue, Relation
 from ltlc.specification.shapes import renamed
 from ltlc.specification.specification import PropertySpecification
 from ltlc.specification.wire import DOUBLES, SINGLES, Kind, Numbers
@@ -67,12 +69,12 @@ def recording(path: Path, columns: str, rows: Sequence[Sequence[Any]], step: flo
     return path
 
 
-def mined(folder: Path, specification: str, *recordings: Path, each: bool = False) -> Mined:
+def mined(folder: Path, specification: str, *recordings: Path, each: bool = False, measures: bool = False) -> Mined:
     path = folder / "props.txt"
     path.write_text(specification)
     template, diagnostics = load(path, [])
     assert template is not None, diagnostics
-    return mine(template, recordings, Budget(), each=each)
+    return mine(template, recordings, Budget(), each=each, measures=measures)
 
 
 def found(folder: Path, property_: str, *recordings: Path) -> Finding:
@@ -107,26 +109,51 @@ THRESHOLDS = (
 )
 
 
-def holds(filled: str, rows: Sequence[tuple[float, float]]) -> bool:
-    """Whether the run of `rows`, read as a word, satisfies the one property of the specification `filled`."""
+APART = 2
+"""So many nanoseconds are between two rows: enough for an instant at which `previously` has caught up."""
+
+
+def read(filled: str, rows: Sequence[tuple[float, float]]) -> tuple[PropertySpecification, list[dict[Input, float]]]:
+    """The one property of the specification `filled`, and what its inputs are in each of `rows`."""
     specification, diagnostics = load_text(Source("props.txt", filled))
     assert specification is not None, diagnostics
     (property_,) = specification.properties
     named = {i.signal.name: i for i in property_.inputs()}
-    values = [{i: v if name == "v" else w for name, i in named.items()} for v, w in rows]
+    return property_, [{i: v if name == "v" else w for name, i in named.items()} for v, w in rows]
+
+
+def holds(filled: str, rows: Sequence[tuple[float, float]]) -> bool:
+    """Whether the run of `rows`, each of which is held for an instant, satisfies the property of `filled`."""
+    property_, values = read(filled, rows)
     letters = [frozenset(a.name for a in property_.atoms if is_true(a.condition, row)) for row in values]
-    word = tuple(Instant(k, letter) for k, letter in enumerate(letters))
+    word = tuple(Instant(k, letters[k // APART]) for k in range(APART * (len(letters) - 1) + 1))
     return satisfies(with_the_past(word, property_), property_.property)
 
 
 def with_the_past(word: tuple[Instant, ...], property_: PropertySpecification) -> tuple[Instant, ...]:
     """`word` with what the past decides at its steps."""
+    return with_past(word, looking_back(property_))
+
+
+def looking_back(property_: PropertySpecification) -> list[PastAtom]:
     found = {atom.name: atom for each in p.predicates(property_.property) for atom in timed_atoms(each)}
-    return with_past(word, [atom for atom in found.values() if isinstance(atom, PastAtom)])
+    return [atom for atom in found.values() if isinstance(atom, PastAtom)]
 
 
-def tightest(template: str, runs: Sequence[Sequence[tuple[float, float]]]) -> float | None:
-    """By trying all values that can decide, the strongest of those with which all runs satisfy the property."""
+def by_how_much_it_holds(filled: str, rows: Sequence[tuple[float, float]]) -> float:
+    """The robustness of the run of `rows`, by definition; one comes `APART` after the other."""
+    property_, values = read(filled, rows)
+    margins = [{a.name: margins_of.by_how_much(a.condition, row) for a in property_.atoms} for row in values]
+    steps = [robustness.Measured(k * APART, each) for k, each in enumerate(margins)]
+    run_ = robustness.with_past(robustness.held(steps, steps[-1].time), looking_back(property_))
+    return robustness.robustness(run_, property_.property)
+
+
+def tightest(template: str, runs: Sequence[Sequence[tuple[float, float]]], is_upward: bool) -> float | None:
+    """By trying all values that can decide, the strongest of those with which all runs satisfy the property.
+
+    It becomes weaker upward, or downward.
+    """
     differences = {a - b for a in LEVELS for b in LEVELS} if "v - w" in template else set()
     values = sorted(
         {math.nextafter(at, way) for at in {*LEVELS, *differences} for way in (-math.inf, at, math.inf)}
@@ -135,7 +162,6 @@ def tightest(template: str, runs: Sequence[Sequence[tuple[float, float]]]) -> fl
     passing = [c for c in values if all(holds(text(template.replace("?", repr(c))), run_) for run_ in runs)]
     if not passing:
         return None
-    is_upward = passing[-1] == values[-1]
     return passing[0] if is_upward else passing[-1]
 
 
@@ -149,10 +175,33 @@ def test_a_threshold_is_the_tightest_with_which_all_runs_satisfy_the_property(tm
         ]
         files = [recording(tmp_path / f"{case}_{k}.csv", "v,w", rows) for k, rows in enumerate(runs)]
         finding = found(tmp_path, template, *files)
-        expected = tightest(template, runs)
+        expected = tightest(template, runs, finding.sought.values.direction == WEAKER)
         assert finding.passes == (expected is not None), runs
         if expected is not None:
             assert finding.sought.values.at(finding.number) == expected, runs
+
+
+@pytest.mark.parametrize("template", THRESHOLDS)
+def test_each_recording_has_the_robustness_of_the_definition_with_the_values_found(
+    tmp_path: Path, template: str
+) -> None:
+    random = Random(template)
+    for case in range(share_of(2)):
+        runs = [[(random.choice(LEVELS), random.choice(LEVELS)) for _ in range(3)] for _ in range(2)]
+        runs = [[(v + 0.12345, w) for v, w in run_] for run_ in runs]  # so that what is found has digits to round
+        names = [tmp_path / f"{case}_{k}.csv" for k in range(len(runs))]
+        files = [recording(name, "v,w", rows, APART * 1e-9) for name, rows in zip(names, runs, strict=True)]
+        (finding,) = mined(tmp_path, text(template), *files, measures=True).findings
+        values = {finding.trial, finding.trial.rounded} if finding.result is Result.FOUND else set()
+        assert set(finding.measured) == values
+        for trial in values:
+            filled = text(template.replace("?", trial.text))
+            margins = {each.recording: each.report["margin"] for each in finding.measured[trial]}
+            expected = [by_how_much_it_holds(filled, rows) for rows in runs]
+            assert margins == {
+                path: None if math.isinf(number) else number for path, number in zip(files, expected, strict=True)
+            }
+            assert min(expected) >= 0
 
 
 BOUNDS = (
@@ -772,6 +821,80 @@ def test_the_json_document_has_the_exact_value_and_the_rounded_one(
         assert (top["value"], top["text"]) == (2.34567, "top: never v > 2.34567")
         assert top["rounded"] == {"value": 2.35, "value_ns": None, "written": "2.35", "text": "top: never v > 2.35"}
         assert (bound["value_ns"], bound["rounded"]["value_ns"]) == (1_234_560_000, 1_240_000_000)
+
+
+def test_with_robustness_the_recording_that_comes_closest_is_reported_and_with_each_all(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    recording(Path("c.csv"), "v,on", [[2.34567, 0], [1, 1]])
+    arguments = ["mine", "props.txt", "b.csv", "c.csv"]
+    closest = "  passes in 2 recordings\n  closest to failing: c.csv, robustness 0.00433 at +0 s: v > 2.35\n"
+    assert main([*arguments, "--robustness"]) == 0
+    shown = capsys.readouterr().out
+    assert f"{closest}\nline 5" in shown
+    assert shown.endswith("  passes in 2 recordings\n  robustness: none: no comparison of numbers decides it\n")
+    assert main([*arguments, "--robustness", "--each"]) == 0
+    assert (
+        f"{closest}"
+        "  b.csv by itself: 2; robustness with 2.35: 0.35 at +1 s: v > 2.35\n"
+        "  c.csv by itself: 2.35; robustness with 2.35: 0.00433 at +0 s: v > 2.35\n"
+    ) in capsys.readouterr().out
+    assert main([*arguments, "--robustness", "--exact"]) == 0
+    assert "  closest to failing: c.csv, robustness 0 at +0 s: v > 2.34567\n" in capsys.readouterr().out
+    assert main([*arguments, "--each"]) == 0
+    assert "robustness" not in capsys.readouterr().out
+
+
+def test_json_has_the_robustness_of_each_recording_with_the_exact_value_and_with_the_rounded_one(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    recording(Path("c.csv"), "v,on", [[1, 0], [2.34567, 1]])
+    arguments = ["mine", "props.txt", "b.csv", "c.csv", "--format", "json"]
+    assert main([*arguments, "--robustness"]) == 0
+    document = json.loads(capsys.readouterr().out)
+    top, bound = document["properties"]
+    assert [(each["recording"], each["label"]) for each in top["robustness"]] == [
+        ("b.csv", "top[2.34567]"),
+        ("c.csv", "top[2.34567]"),
+    ]
+    assert [each["margin"] for each in top["robustness"]] == [2.34567 - 2, 0]
+    assert [each["margin"] for each in top["rounded"]["robustness"]] == [2.35 - 2, 2.35 - 2.34567]
+    assert top["rounded"]["robustness"][1] | {"margin": 0} == {
+        "recording": "c.csv",
+        "label": "top[2.35]",
+        "margin": 0,
+        "reason": None,
+        "comparison": "v > 2.35",
+        "time": 1.0,
+        "time_ns": 1_000_000_000,
+        "offset": 1.0,
+    }
+    assert [each["reason"] for each in bound["robustness"]] == ["no comparison of numbers decides it"] * 2
+    assert main(arguments) == 0
+    without = json.loads(capsys.readouterr().out)
+    assert document["looks"] == without["looks"] + 2
+    assert "robustness" not in without["properties"][0] | without["properties"][0]["rounded"]
+
+
+def test_what_cannot_be_measured_in_a_recording_is_counted_with_the_reason(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    Path("some.txt").write_text(
+        "decl v /v std_msgs/Int64.data\ndecl w /w std_msgs/Int64.data\nall: forall x in {v, w}: never x < ?\n"
+    )
+    small = recording(Path("small.csv"), "v,w", [[2, 5], [3, 7]])
+    large = recording(Path("large.csv"), "v,w", [[2, 2**60 + 1], [3, 9]])
+    partly = recording(Path("partly.csv"), "v", [[4], [5]])
+    assert main(["mine", "some.txt", *map(str, (small, large, partly)), "--robustness", "--each"]) == 0
+    shown = capsys.readouterr().out
+    assert ("  all: forall x in {v, w}: never x < 2\n") in shown
+    assert (
+        "  closest to failing: small.csv, robustness 0 at +0 s: v < 2\n"
+        "  robustness: none in 1 of 3 recordings: integers that are not doubles\n"
+        "  small.csv by itself: 2; robustness with 2: 0 at +0 s: v < 2\n"
+        "  large.csv by itself: 2; robustness with 2: none: integers that are not doubles\n"
+        "  partly.csv by itself: 4; robustness with 2: 2 at +0 s: v < 2\n"
+    ) in shown
 
 
 def test_the_specification_is_written_with_its_comments(folder: Path) -> None:

@@ -55,6 +55,12 @@ def test_text_ranks_what_is_violated_most_first(drive: Path, capsys: pytest.Capt
     ]
 
 
+def test_a_margin_of_nothing_has_no_sign(drive: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (drive / "props.txt").write_text("decl speed /speed std_msgs/Float64.data\nnever speed > 1.75\n", encoding="utf-8")
+    assert ran(drive, "--robustness") == 0
+    assert "  line 2: 0 at +2 s: speed > 1.75\n" in capsys.readouterr().out
+
+
 def test_json_has_the_margin_or_why_there_is_none(drive: Path, capsys: pytest.CaptureFixture[str]) -> None:
     ran(drive, "--robustness", "--format", "json")
     found = {each["label"]: each["robustness"] for each in json.loads(capsys.readouterr().out)["properties"]}

@@ -27,6 +27,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--each", action="store_true", help="also report the tightest value of each recording by itself"
     )
     parser.add_argument(
+        "--robustness", action="store_true", help="also report by how much the recordings pass with the values found"
+    )
+    parser.add_argument(
         "--exact", action="store_true", help="print and write the tightest values to the last digit, not rounded"
     )
     parser.add_argument(
@@ -62,7 +65,8 @@ def run(options: argparse.Namespace) -> int:
     try:
         with progress("reading recordings", options.quiet) as watch:
             reading = arguments.reading(options)
-            mined = mine(template, paths, Budget(*options.budget), watch, options.each, reading)
+            budget = Budget(*options.budget)
+            mined = mine(template, paths, budget, watch, options.each, reading, options.robustness)
     except SpotMissing as error:
         return unusable(str(error))
     except TooHardError as error:

@@ -51,7 +51,7 @@ class Curve:
     @property
     def whole(self) -> float | None:
         """That of the whole run; None if it did not begin, or cannot be measured."""
-        return float(self.margins[0]) if len(self.margins) else None
+        return float(self.margins[0]) + 0.0 if len(self.margins) else None  # 0, not -0, however it came about
 
 
 @dataclass(frozen=True, slots=True)

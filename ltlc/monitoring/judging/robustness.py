@@ -29,7 +29,20 @@ def robustness_report(session: Session, curve: Curve) -> dict[str, Any]:
 def robustness_text(session: Session, curves: Mapping[str, Curve]) -> str:
     """A line for each property, the one that is violated most, or closest to it, first."""
     ranked = sorted(curves, key=lambda label: math.inf if _reason(curves[label]) else curves[label].whole or 0.0)
-    return "".join(["\nRobustness:\n", *(f"  {label}: {_told(session, curves[label])}\n" for label in ranked)])
+    return "".join(
+        ["\nRobustness:\n", *(f"  {label}: {robustness_sentence(session, curves[label])}\n" for label in ranked)]
+    )
+
+
+def robustness_sentence(session: Session, curve: Curve) -> str:
+    """The margin, when and by which comparison; or why there is none."""
+    if reason := _reason(curve):
+        return f"none: {reason}"
+    margin = f"{curve.whole:.6g}"
+    if curve.decided is None:
+        return margin
+    time, comparison = curve.decided
+    return f"{margin} at {session.scale.text(time)}: {comparison}"
 
 
 def _reason(curve: Curve) -> str:
@@ -39,13 +52,3 @@ def _reason(curve: Curve) -> str:
     if curve.whole is None:
         return NOT_STARTED
     return NO_NUMBERS if math.isinf(curve.whole) else ""
-
-
-def _told(session: Session, curve: Curve) -> str:
-    if reason := _reason(curve):
-        return f"none: {reason}"
-    margin = f"{curve.whole:.6g}"
-    if curve.decided is None:
-        return margin
-    time, comparison = curve.decided
-    return f"{margin} at {session.scale.text(time)}: {comparison}"

@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import field
 from enum import Enum
-from math import isfinite, isnan
+from itertools import product
+from math import inf, isfinite, isnan
 from pathlib import Path
+from typing import Any
 
 from ltlc.automata import Budget
 from ltlc.base.diagnostics import Diagnostic, Severity
@@ -14,6 +16,7 @@ from ltlc.base.limits import Watch
 from ltlc.dataclass import dataclass
 from ltlc.frontend.language.parameters import Role
 from ltlc.inputs.recordings.reading import DEFAULT, ReadOptions
+from ltlc.monitoring.judging.run import RunReport
 from ltlc.monitoring.mining.oracle import Answer, Kept, Oracle, Outcome
 from ltlc.monitoring.mining.search import Search
 from ltlc.monitoring.mining.template import Sought, Template, Trial
@@ -39,6 +42,21 @@ class Failure:
     answer: Answer
 
 
+@dataclass(frozen=True, slots=True)
+class Measured:
+    """By how much a property with a value holds in a recording: its JSON object and its line, as in `ltlc run`.
+
+    Of those that a `forall` stands for, `label` says which it is. `least` is a lower bound of the margin: the margin
+    itself, −∞ if it cannot be measured, and ∞ if no number decides it.
+    """
+
+    recording: Path
+    label: str
+    least: float
+    report: Mapping[str, Any]
+    sentence: str
+
+
 @dataclass
 class Finding:
     """What the recordings so far show of what is `sought`: all values from `number` on pass.
@@ -46,6 +64,7 @@ class Finding:
     `failure` is the recording that decides, with the next tighter value; where no value passes, with the weakest.
     `not_started` has the remarks of `ltlc run` on what did not, all of it or a part of what a `forall` stands for.
     `alone` has, of each recording that was asked for it, the tightest value with which it passes, None if none does.
+    `measured` says of the value that was found, and of the rounded one, by how much each recording passes with it.
     """
 
     sought: Sought
@@ -56,6 +75,7 @@ class Finding:
     not_started: dict[Path, list[str]] = field(default_factory=dict)
     never_triggered: bool = True
     alone: dict[Path, int | None] = field(default_factory=dict)
+    measured: dict[Trial, list[Measured]] = field(default_factory=dict)
 
     @property
     def result(self) -> Result:
@@ -71,6 +91,10 @@ class Finding:
     def trial(self) -> Trial:
         """The tightest value, if there is one."""
         return Trial(self.sought, self.number)
+
+    def shown(self, exact: bool) -> Trial:
+        """The tightest value if that is to be `exact`, or else this rounded outwards."""
+        return self.trial if exact else self.trial.rounded
 
 
 @dataclass(frozen=True)
@@ -100,10 +124,8 @@ class Mined:
 
     def values(self, exact: bool = False) -> list[Trial] | None:
         """What was found, if all of it was: the tightest values if `exact`, or else these rounded outwards."""
-        found = [finding.trial for finding in self.findings if finding.result is Result.FOUND]
-        if len(found) != len(self.findings):
-            return None
-        return found if exact else [each.rounded for each in found]
+        found = [finding.shown(exact) for finding in self.findings if finding.result is Result.FOUND]
+        return found if len(found) == len(self.findings) else None
 
 
 def mine(
@@ -113,18 +135,23 @@ def mine(
     watch: Watch | None = None,
     each: bool = False,
     reading: ReadOptions = DEFAULT,
+    measures: bool = False,
 ) -> Mined:
     """The tightest values with which every recording at `paths` passes; with `each` also those of each by itself.
+
+    If it `measures`, recordings are then read once more, for by how much they pass.
 
     Raises TooHardError and SpotMissing.
     """
     oracle = Oracle(template, budget, reading)
     findings = tuple(map(Finding, template.sought))
     unusable, diagnostics = [], []
-    for done, path in enumerate(paths):
+    rounds = (False, True) if measures else (False,)
+    for done, (is_measured, path) in enumerate(product(rounds, paths)):
         if watch is not None:
-            watch(done, len(paths))
-        problems = _ask(oracle, Kept(path), findings, each)
+            watch(done, len(rounds) * len(paths))
+        recording = Kept(path)
+        problems = _measure(oracle, recording, findings) if is_measured else _ask(oracle, recording, findings, each)
         unusable += [path] if problems else []
         diagnostics += problems
     diagnostics += oracle.late([finding.trial for finding in findings if finding.passes])
@@ -137,8 +164,7 @@ def _ask(oracle: Oracle, recording: Kept, findings: Sequence[Finding], each: boo
     while asked := [(finding, search) for finding, search in searches if not search.is_done]:
         trials = [Trial(finding.sought, number) for finding, search in asked for number in search.numbers()]
         report, answers = oracle.answers(recording, trials)
-        problems = [each for each in report.diagnostics if each.severity is Severity.ERROR]
-        if problems:
+        if problems := _errors(report):
             return problems
         for finding, search in asked:
             of_it = {trial.number: answer for trial, answer in answers.items() if trial.sought is finding.sought}
@@ -146,6 +172,10 @@ def _ask(oracle: Oracle, recording: Kept, findings: Sequence[Finding], each: boo
                 searches = [pair for pair in searches if pair[0] is not finding]
     _conclude(oracle, recording, searches, each)
     return []
+
+
+def _errors(report: RunReport) -> list[Diagnostic]:
+    return [each for each in report.diagnostics if each.severity is Severity.ERROR]
 
 
 def _learn(finding: Finding, search: Search, recording: Kept, answers: Mapping[int, Answer]) -> bool:
@@ -201,3 +231,24 @@ def _conclude(oracle: Oracle, recording: Kept, searches: Sequence[tuple[Finding,
         _, answers = oracle.answers(recording, [trial for _, trial in deciding], finds_all=True)
         for finding, trial in deciding:
             finding.failure = Failure(recording.path, trial, answers[trial])
+
+
+def _measure(oracle: Oracle, recording: Kept, findings: Sequence[Finding]) -> list[Diagnostic]:
+    """Enter by how much `recording` passes with what was found, and return nothing; otherwise its errors."""
+    found = [each for each in findings if each.result is Result.FOUND and recording.path in each.started]
+    trials = {trial: each for each in found for trial in (each.trial, each.trial.rounded)}
+    if not trials:
+        return []
+    from ltlc.monitoring.judging.robustness import robustness_report, robustness_sentence  # which few ask for
+
+    report, answers = oracle.answers(recording, list(trials), measures=True)
+    if problems := _errors(report):
+        return problems
+    for trial, finding in trials.items():
+        session, curves = answers[trial].session, answers[trial].robustness
+        for label in [track.property.label for track in answers[trial].tracks]:
+            curve = curves[label]
+            least = -inf if curve.reason else inf if curve.whole is None else curve.whole
+            told = robustness_report(session, curve), robustness_sentence(session, curve)
+            finding.measured.setdefault(trial, []).append(Measured(recording.path, label, least, *told))
+    return []

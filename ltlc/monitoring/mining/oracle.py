@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterator, Mapping, Sequence
+from dataclasses import field
 from enum import Enum
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from ltlc.assurance.exactness import late_verdicts
 from ltlc.automata import Budget, Exceeded
@@ -25,6 +27,9 @@ from ltlc.semantics.verdicts import Verdict
 from ltlc.specification.expressions import Signal
 from ltlc.specification.specification import Specification
 
+if TYPE_CHECKING:
+    from ltlc.monitoring.columns.measuring import Curve
+
 MOST_KEPT = 256 * 2**20
 """Bytes of a recording that are kept in memory; of a longer one, each look reads all."""
 
@@ -40,10 +45,14 @@ class Outcome(Enum):
 
 @dataclass(frozen=True)
 class Answer:
-    """The properties that have the value of a trial, as they stand at the end of a recording."""
+    """The properties that have the value of a trial, as they stand at the end of a recording.
+
+    Where it was measured, `robustness` says by how much they hold, by label.
+    """
 
     session: Session
     tracks: tuple[Track, ...]
+    robustness: Mapping[str, Curve] = field(default_factory=dict)
 
     @property
     def outcome(self) -> Outcome:
@@ -87,23 +96,25 @@ class Oracle:
         self._monitors: dict[Hashable, Monitor | Exceeded] = {}
 
     def answers(
-        self, recording: Kept, trials: Sequence[Trial], finds_all: bool = False
+        self, recording: Kept, trials: Sequence[Trial], finds_all: bool = False, measures: bool = False
     ) -> tuple[RunReport, dict[Trial, Answer]]:
         """The verdict of `recording` on each of `trials`; nothing if none of it can be read.
 
-        If it `finds_all` violations, those after the first one are known, too.
+        If it `finds_all` violations, those after the first one are known, too. If it `measures`, answers have margins.
 
         Raises TooHardError and SpotMissing.
         """
         compiled, specification = self._compiled(trials)
         self.looks += 1
-        judge = Judge(compiled, specification, self._reading, open=recording.open, finds_all=finds_all)
+        judge = Judge(
+            compiled, specification, self._reading, open=recording.open, finds_all=finds_all, measures=measures
+        )
         report = judge.judge(recording.path)
         if report.session is None:
             return report, {}
         pairs = list(zip(specification.properties, report.session.tracks, strict=True))
         return report, {
-            trial: Answer(report.session, tuple(track for property_, track in pairs if trial.is_of(property_)))
+            trial: Answer(report.session, tuple(track for of, track in pairs if trial.is_of(of)), report.robustness)
             for trial in trials
         }
 

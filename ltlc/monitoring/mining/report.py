@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections import Counter
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from textwrap import indent
 from typing import Any
@@ -12,7 +13,7 @@ from ltlc.base.provenance import provenance
 from ltlc.frontend.language.parameters import Role
 from ltlc.inputs.recordings.digests import digests
 from ltlc.monitoring.judging.violations import spread
-from ltlc.monitoring.mining.mine import Failure, Finding, Mined, Result
+from ltlc.monitoring.mining.mine import Failure, Finding, Measured, Mined, Result
 from ltlc.monitoring.mining.template import Trial
 from ltlc.runtime import documents, reports
 from ltlc.runtime.reports import printable
@@ -33,7 +34,7 @@ def _lines(mined: Mined, finding: Finding, exact: bool) -> Iterator[str]:
     yield printable(place if sought.label == f"line {sought.line}" else f"{place} ({sought.label})") + ":"
     match finding.result:
         case Result.FOUND:
-            shown = finding.trial if exact else finding.trial.rounded
+            shown = finding.shown(exact)
             yield f"  {printable(mined.template.property_text(shown))}"
             if shown != finding.trial:
                 yield f"  rounded outwards; `--exact` gives {finding.trial.text}"
@@ -80,14 +81,36 @@ def _others(mined: Mined, finding: Finding, exact: bool) -> Iterator[str]:
     """What recordings say that do not decide."""
     if finding.result is Result.FOUND and len(finding.started) > 1:
         yield f"  passes in {len(finding.started)} recordings"
+    closest = _closest(finding, exact)
+    yield from _robustness(closest)
     for path, number in finding.alone.items():
         alone = None if number is None else Trial(finding.sought, number)
         shown = alone if alone is None or exact else alone.rounded
-        yield f"  {_name(path)} by itself: {'no value passes' if shown is None else shown.text}"
+        common = f"; robustness with {finding.shown(exact).text}: {closest[path].sentence}" if path in closest else ""
+        yield f"  {_name(path)} by itself: {'no value passes' if shown is None else shown.text}{common}"
     for path, remarks in finding.not_started.items():
         yield f"  not started in {_name(path)}: {'; '.join(remarks)}"
     if not_asked := _not_asked(mined, finding):
         yield f"  not examined, as no value would pass: {', '.join(map(_name, not_asked))}"
+
+
+def _robustness(closest: Mapping[Path, Measured]) -> Iterator[str]:
+    """The recording that passes by least, and why others have no margin."""
+    if numbers := [each for each in closest.values() if each.report["margin"] is not None]:
+        least = min(numbers, key=lambda each: each.least)
+        yield f"  closest to failing: {_name(least.recording)}, robustness {least.sentence}"
+    for reason, count in Counter(each.report["reason"] for each in closest.values()).items():
+        where = "" if count == len(closest) else f" in {count} of {len(closest)} recordings"
+        if reason is not None:
+            yield f"  robustness: none{where}: {reason}"
+
+
+def _closest(finding: Finding, exact: bool) -> dict[Path, Measured]:
+    """What passes by least in each recording with the value that is shown, if it was asked for."""
+    closest: dict[Path, Measured] = {}
+    for each in finding.measured.get(finding.shown(exact), ()):
+        closest[each.recording] = min(closest.get(each.recording, each), each, key=lambda of: of.least)
+    return closest
 
 
 def _not_asked(mined: Mined, finding: Finding) -> list[Path]:
@@ -129,7 +152,8 @@ def _property(mined: Mined, finding: Finding) -> dict[str, Any]:
         "result": finding.result.name.lower(),
         **_value(finding.trial if is_found else None),
         "text": mined.template.property_text(finding.trial) if is_found else None,
-        "rounded": _rounded(mined, finding.trial) if is_found else None,
+        **_measured(finding, finding.trial),
+        "rounded": _rounded(mined, finding) if is_found else None,
         "decided_by": finding.failure and _failure(finding.failure),
         "started": [str(path) for path in finding.started],
         "not_started": [str(path) for path in finding.not_started],
@@ -154,8 +178,15 @@ def _failure(failure: Failure) -> dict[str, Any]:
     }
 
 
-def _rounded(mined: Mined, trial: Trial) -> dict[str, Any]:
-    return {**_value(trial.rounded), "text": mined.template.property_text(trial.rounded)}
+def _rounded(mined: Mined, finding: Finding) -> dict[str, Any]:
+    trial = finding.trial.rounded
+    return {**_value(trial), "text": mined.template.property_text(trial), **_measured(finding, trial)}
+
+
+def _measured(finding: Finding, trial: Trial) -> dict[str, Any]:
+    """By how much recordings pass with that value, if it was asked for."""
+    found = [{"recording": str(m.recording), "label": m.label, **m.report} for m in finding.measured.get(trial, ())]
+    return {"robustness": found} if found else {}
 
 
 def _value(trial: Trial | None) -> dict[str, Any]:
