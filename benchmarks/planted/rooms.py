@@ -38,7 +38,7 @@ ROOMS = {
     "test_assurance_evidence.py",
     "frontend/language": "test_language_*.py test_ground_truth.py test_analysis_suppression.py",
     "frontend/layout": "test_layout.py test_commands_format.py",
-    "falsification": "test_falsify.py test_commands_falsify.py",
+    "falsification": "test_falsify.py test_commands_falsify.py test_examples_falsify.py",
     "importing": "test_importing*.py test_commands_import.py",
     "base/limits": "test_limits.py",
     "inputs/messages": "test_messages_definitions.py test_language_signals.py",

@@ -2,8 +2,8 @@
 
 First everything is as it is by default, then come examples and points that are spread evenly; from the point with the
 least loss of a property, CMA-ES then goes on (Hansen and Ostermeier, *Completely derandomized self-adaptation in
-evolution strategies*, 2001). The property that is closest to failing is pursued first; each has an equal share of what
-is left of the budget.
+evolution strategies*, 2001). Properties take turns, a generation each, that which is closest to failing first: which of
+them can fail is not known, and those that cannot may come closest.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import math
 import warnings
 from collections.abc import Generator, Mapping, Sequence
 from statistics import median
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -25,7 +25,7 @@ Losses = Mapping[str, float]
 """How close each property came to failing, by its label: the less, the closer; infinite where that is not known."""
 
 SPREAD = 0.2
-"""The share of the budget that is spread evenly."""
+"""The share of the budget that is spread evenly at most."""
 
 LEAST_SPREAD = 8
 """So many points are spread at least."""
@@ -57,23 +57,22 @@ def proposals(begin: Sequence[Point], budget: int, seed: int) -> Proposals:
     rng = np.random.default_rng(seed)
     tried: list[Tried] = []
     dimension = len(begin[0])
-    spread = _spread(dimension, max(round(budget * SPREAD), LEAST_SPREAD), rng)
+    # Two points for each coordinate tell where a descent may begin; what more would tell, the descent tells sooner.
+    count = max(min(2 * dimension + 1, round(budget * SPREAD)), LEAST_SPREAD)
+    spread = _spread(dimension, count, rng)
     for point in [*begin, *spread]:
         losses = yield Proposal(point)
         tried.append(Tried(point, losses))
-    done: list[str] = []
+    descents: dict[str, _Descent] = {}
     while True:
         ranking = ranked(tried)
-        left = [label for label in ranking if label not in done]
+        for label in ranking:
+            if label not in descents:
+                descents[label] = _Descent(label, tried, rng)
+            yield from descents[label].generation(tried)
         if not ranking:
             point = _anywhere(dimension, rng)
             tried.append(Tried(point, (yield Proposal(point))))
-        elif not left:
-            done.clear()
-        else:
-            share = max((budget - len(tried)) // len(left), 1)
-            yield from _pursue(left[0], share, tried, rng)
-            done.append(left[0])
 
 
 def ranked(tried: Sequence[Tried]) -> list[str]:
@@ -100,37 +99,37 @@ def _anywhere(dimension: int, rng: np.random.Generator) -> Point:
     return tuple(map(float, rng.random(dimension)))
 
 
-def _pursue(label: str, most: int, tried: list[Tried], rng: np.random.Generator) -> Proposals:
-    """Descend for one property `most` times, from the best point, and then from others; `tried` gets what is found."""
-    end = len(tried) + most
-    start = min(tried, key=lambda each: each.losses[label]).point
-    while len(tried) < end:
-        yield from _descend(start, label, end, tried, rng)
-        start = _anywhere(len(start), rng)
+class _Descent:
+    """Descends for one property from the best point, and, when nothing gets better, from others."""
 
+    def __init__(self, label: str, tried: Sequence[Tried], rng: np.random.Generator) -> None:
+        self._label = label
+        self._rng = rng
+        start = min(tried, key=lambda each: each.losses[label]).point
+        self._dimension = len(start)
+        self._strategy = self._from(start)
 
-def _descend(start: Point, label: str, end: int, tried: list[Tried], rng: np.random.Generator) -> Proposals:
-    """Descend from `start` until nothing gets better, or `end` points were tried."""
-    dimension = len(start)
-    options = {
-        "bounds": [0, 1],
-        "randn": lambda *shape: rng.standard_normal(shape),
-        "seed": math.nan,  # of another generator
-        "verbose": -9,
-    }
-    # CMA-ES takes no single coordinate: a second one, which nothing reads, is beside it.
-    strategy = cma.CMAEvolutionStrategy([*start, 0.5][: max(dimension, 2)], STEP, options)
-    while not strategy.stop():
-        points = strategy.ask()
-        losses: list[float] = []
+    def generation(self, tried: list[Tried]) -> Proposals:
+        """The points that come next; `tried` gets what is found."""
+        if self._strategy.stop():
+            self._strategy = self._from(_anywhere(self._dimension, self._rng))
+        points, losses = self._strategy.ask(), list[float]()
         for coordinates in points:
-            if len(tried) == end:
-                return
-            point = tuple(float(number) for number in coordinates[:dimension])
-            found = yield Proposal(point, label)
+            point = tuple(float(number) for number in coordinates[: self._dimension])
+            found = yield Proposal(point, self._label)
             tried.append(Tried(point, found))
-            losses.append(found[label])
-        strategy.tell(points, _finite(losses))
+            losses.append(found[self._label])
+        self._strategy.tell(points, _finite(losses))
+
+    def _from(self, start: Point) -> Any:
+        options = {
+            "bounds": [0, 1],
+            "randn": lambda *shape: self._rng.standard_normal(shape),
+            "seed": math.nan,  # of another generator
+            "verbose": -9,
+        }
+        # CMA-ES takes no single coordinate: a second one, which nothing reads, is beside it.
+        return cma.CMAEvolutionStrategy([*start, 0.5][: max(self._dimension, 2)], STEP, options)
 
 
 def _finite(losses: Sequence[float]) -> list[float]:
