@@ -178,7 +178,7 @@ def test_a_run_that_was_found_parts_the_guards_on_a_recording_too(
         (found,) = json.loads(capsys.readouterr().out)["guard"]
         last.append(
             max((each["time"] for each in found["passed"]), default=0)
-            == pytest.approx(float(rows[-1]["time"]), abs=1e-10)
+            == pytest.approx(float(str(rows[-1]["time"])), abs=1e-10)
         )
     assert (passes, last) == (files[1], [False, True])
     assert main(["compare", *files]) == 3
