@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import random
 import re
+from collections.abc import Sequence
 from functools import cache
 from itertools import permutations
 from pathlib import Path
@@ -12,11 +13,13 @@ from pathlib import Path
 import pytest
 from effort import share_of
 
+import ltlc
 from benchmarks.guarded import CMD, EXAMPLES, SCAN, SCANS, SPEEDS, Driven, Example
+from ltlc.analysis.examples import Example as Shown
 from ltlc.automata import Budget
 from ltlc.cli import main
 from ltlc.interfaces.api.compare_guards import OutCompared, compare_guards
-from ltlc.runtime.guarding import Action
+from ltlc.runtime.guarding import Action, Deed
 
 TEXTS = {
     "near": EXAMPLES["near"].text,
@@ -39,6 +42,26 @@ TEXTS = {
 
 
 PAIRS = list(permutations(TEXTS, 2))
+
+HOT, TURN = EXAMPLES["no faster than when it got hot"].text, "decl turn /turn std_msgs/Float64.data\n"
+RATE, FLAG = EXAMPLES["rate of commands"].text, "decl hot /hot std_msgs/Bool.data\n"
+TRIED = {
+    "counts": (
+        CMD + "p: always (new speed implies not once new speed 3 times within 60 ms)",
+        CMD + "p: always (new speed implies not once new speed 3 times within 50 ms)",
+    ),
+    "openings": (HOT, HOT.replace("opening})", "opening} + 0.1)")),
+    "several signals": (
+        CMD + TURN + "p: always (new speed implies abs(speed + turn) <= 1)",
+        CMD + TURN + "p: always (new speed implies speed + turn <= 1)",
+    ),
+    "several clocks": (RATE.replace("20 ms", "30 ms"), RATE),
+    "one instant": (
+        CMD + FLAG + "p: never (previously new hot and speed >= 1)",
+        CMD + FLAG + "p: never (hot and speed >= 9)",
+    ),
+}
+"""By what the game does not decide: two guards of which the second lets a command through that the first does not."""
 
 
 @cache
@@ -75,6 +98,10 @@ def test_the_run_that_is_shown_makes_the_difference(folder: Path, one: str, two:
     for difference in compared(folder, one, two).differences:
         if difference.example is None:
             continue
+        if difference.by_trying:
+            assert lets_last_through(difference.passes, difference.example), difference
+            assert not lets_last_through(difference.refuses, difference.example), difference
+            continue
         columns, rows = difference.example.signals, list[tuple[int, dict[str, object]]]()
         shown = list(zip(difference.example.steps, difference.example.remarks, strict=True))
         time, first = 1_000_000_000, dict(zip(columns, shown[0][0], strict=True))
@@ -91,6 +118,95 @@ def test_the_run_that_is_shown_makes_the_difference(folder: Path, one: str, two:
                 time += int(later[1]) * 1_000_000
         assert passes(Path(difference.passes).name, rows)[-1], difference
         assert not passes(Path(difference.refuses).name, rows)[-1], difference
+
+
+@pytest.mark.parametrize("name", TRIED)
+def test_a_run_is_found_by_trying_where_the_game_of_both_finds_none(tmp_path: Path, name: str) -> None:
+    for file, text in zip(("one", "two"), TRIED[name], strict=True):
+        (tmp_path / file).write_text(text, encoding="utf-8")
+    first, *_ = compare_guards(tmp_path / "one", tmp_path / "two", (), (), Budget()).topics
+    difference = {each.passes: each for each in first.differences}[str(tmp_path / "two")]
+    assert difference.by_trying
+    assert difference.example is not None
+    assert lets_last_through(str(tmp_path / "two"), difference.example)
+    assert not lets_last_through(str(tmp_path / "one"), difference.example)
+    assert len(difference.example.steps) <= 4
+
+
+@pytest.mark.parametrize(
+    ("one", "two"),
+    [
+        (HOT, HOT),
+        (RATE, RATE),
+        (TRIED["counts"][0], TRIED["counts"][0]),
+        (TRIED["several signals"][1], TRIED["several signals"][1].replace("speed + turn", "turn + speed")),
+    ],
+)
+def test_no_run_is_found_for_guards_that_are_equal(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], one: str, two: str
+) -> None:
+    files = [tmp_path / "one", tmp_path / "two"]
+    for file, text in zip(files, (one, two), strict=True):
+        file.write_text(text, encoding="utf-8")
+    code = main(["compare", *map(str, files), "--format", "json"])
+    (of_cmd,) = json.loads(capsys.readouterr().out)["guards"]
+    assert all(each["example"] is None for each in of_cmd["differences"])
+    assert code == (3 if of_cmd["undecided"] or of_cmd["differences"] else 0)
+
+
+def test_a_run_that_was_found_parts_the_guards_on_a_recording_too(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    files = [str(tmp_path / "one"), str(tmp_path / "two")]
+    for file, text in zip(files, TRIED["openings"], strict=True):
+        Path(file).write_text(text, encoding="utf-8")
+    assert main(["compare", *files, "--format", "json"]) == 3
+    (of_cmd,) = json.loads(capsys.readouterr().out)["guards"]
+    ((passes, example),) = [(each["passes"], each["example"]) for each in of_cmd["differences"]]
+    rows = [
+        row_of([*step["values"]], [*step["values"].values()], step["remark"])
+        | {"time": f"{1 + step['time_ns'] * 1e-9:.9f}"}
+        for step in example["steps"]
+    ]
+    recording = tmp_path / "r.csv"
+    columns = ["time", "hot", "/cmd_vel_raw/linear/x"]
+    lines = [columns, *([str(row.get(column, "")).lower() for column in columns] for row in rows)]
+    recording.write_text("".join(f"{','.join(line)}\n" for line in lines), encoding="utf-8")
+    last = []
+    for file in files:
+        main(["run", "--guard", "--format", "json", file, str(recording)])
+        (found,) = json.loads(capsys.readouterr().out)["guard"]
+        last.append(
+            max((each["time"] for each in found["passed"]), default=0)
+            == pytest.approx(float(str(rows[-1]["time"])), abs=1e-10)
+        )
+    assert (passes, last) == (files[1], [False, True])
+    assert main(["compare", *files]) == 3
+    shown = capsys.readouterr().out
+    assert (
+        f"{files[1]} lets a command through that {files[0]} does not (found by trying): it would violate `p`" in shown
+    )
+    assert re.search(rf"no run found in which {files[0]} lets .* does not: {of_cmd['tried']} tried; not decided", shown)
+    assert "one of them counts, or reads values at openings" in shown
+
+
+def lets_last_through(file: str, example: Shown) -> bool:
+    """Whether, row by row, the guard of a file lets the last command through of a run that was found by trying."""
+    run, deeds = ltlc.guard(Path(file)), list[Deed]()
+    rows = zip(example.times, example.steps, example.remarks, strict=True)
+    for time, step, remark in (row for number, row in enumerate(rows) if number not in example.by_time):
+        while run.due is not None and run.due <= time:
+            run.step({}, time_ns=run.due)
+        deeds = run.step(row_of(example.signals, step, remark), time_ns=time)
+    return [each.action for each in deeds if each.command is not None] == [Action.PASSED]
+
+
+def row_of(signals: Sequence[str], step: Sequence[object], remark: str) -> dict[str, object]:
+    """What a row of a run says that was found by trying: on a topic, the signals that are called like it."""
+    values = dict(zip(signals, step, strict=True))
+    if "a command on /cmd_vel" in remark:
+        return {"/cmd_vel_raw/linear/x": values["speed"]}
+    return {name: value for name, value in values.items() if remark.endswith(f"/{name}")}
 
 
 @pytest.mark.parametrize(("one", "two"), PAIRS)

@@ -108,7 +108,7 @@ def shown(setting: Setting, rows: Sequence[Values]) -> list[dict[str, Any]]:
     """`rows` by the names of the signals, for people."""
     reads = list(dict.fromkeys(value for atom in setting.atoms for value in reads_of(atom.condition)))
     named = list(zip(read_texts(reads), reads, strict=True))
-    return [{name: _shown(row[value]) for name, value in named} for row in rows]
+    return [{name: for_people(row[value]) for name, value in named} for row in rows]
 
 
 def rows_of(setting: Setting, word: Word, loop: int | None) -> list[Values] | None:
@@ -169,10 +169,10 @@ def _is_exact(atoms: tuple[Atom, ...], steps: Sequence[Values], word: Word) -> b
     return all(letter(atoms, values) == wanted & names for values, wanted in zip(steps, word, strict=True))
 
 
-def _shown(value: Any) -> Any:
+def for_people(value: Any) -> Any:
     """A value for people and JSON: whole numbers without a point, arrays as lists."""
     if isinstance(value, tuple):
-        return [_shown(element) for element in value]
+        return [for_people(element) for element in value]
     if isinstance(value, float) and value.is_integer() and abs(value) < 1e15:
         return int(value)
     return value

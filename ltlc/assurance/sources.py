@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import random
-from collections.abc import Hashable, Iterator, Mapping
+from collections.abc import Hashable, Iterable, Iterator, Mapping
 from dataclasses import replace
 
 from ltlc.assurance.histories import Sample
@@ -110,8 +110,12 @@ def given(specification: PropertySpecification) -> Sources:
 
 def read(specification: PropertySpecification, messages: Messages) -> Sources:
     """What the signals of a property are computed from: fields of messages."""
-    found = dict.fromkeys(pair for i in specification.inputs() for pair in fields(i.signal))
-    places = {signal: _place(field, messages) for signal, field in found}
+    return read_at((pair for i in specification.inputs() for pair in fields(i.signal)), messages)
+
+
+def read_at(found: Iterable[tuple[Signal, Field]], messages: Messages) -> Sources:
+    """Signals that are fields of messages."""
+    places = {signal: _place(field, messages) for signal, field in dict.fromkeys(found)}
     return Sources(tuple(places), places, tuple(_lists(places)))
 
 

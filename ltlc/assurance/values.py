@@ -79,28 +79,68 @@ Frames = tuple[Frame, ...]
 """Frames one after the other, as often as `RATE` says."""
 
 
-class Samples:
+class Draws:
+    """Draws samples of `sources`: of what `conditions` compare with, its neighbours, and some others."""
+
+    def __init__(self, conditions: Sequence[Condition], sources: Sources) -> None:
+        self.sources = sources
+        self.chance = random.Random(0)
+        compared = [e for condition in conditions for operand in operands(condition) for e in _within(operand)]
+        inner = [each for condition in conditions for each in nested(condition)]
+        margins = {each.margin for each in inner if isinstance(each, Comparison)}
+        constants = {e.value for e in compared if isinstance(e, Number)}
+        self._numbers = _interesting(constants, margins)
+        self._lengths = _lengths(compared, constants)
+        self._strings = [*dict.fromkeys(e.value for e in compared if isinstance(e, String)), "", "something else"]
+
+    def draw(self) -> Frame:
+        """One sample of every source."""
+        return Frame(self.sources.possible({signal: self._value(signal.type) for signal in self.sources.signals}))
+
+    def even(self) -> Frame:
+        """A sample in which all numbers are the same, so that one differs where it is varied."""
+        number = self.chance.choice(self._numbers)
+        drawn = {s: number if s.type is ValueType.NUMBER else self._value(s.type) for s in self.sources.signals}
+        return Frame(self.sources.possible(drawn))
+
+    def _value(self, type_: ValueType) -> Value:
+        return self._single(type_) if type_.element is None else self._array(type_.element)
+
+    def _array(self, type_: ValueType) -> Value:
+        """An array of one length or another; of few different elements, or of many."""
+        length = self.chance.choice(self._lengths)
+        drawn = [self._single(type_) for _ in range(min(length, self.chance.choice([1, 2, length])))]
+        return tuple(self.chance.choice(drawn) for _ in range(length))
+
+    def _single(self, type_: ValueType) -> Single:
+        match type_:
+            case ValueType.BOOLEAN:
+                return self.chance.random() < 1 / 2
+            case ValueType.STRING:
+                return self.chance.choice(self._strings)
+            case _:
+                return self._number()
+
+    def _number(self) -> float:
+        if self.chance.random() < 1 / 4:
+            return self.chance.gauss(0.0, 10.0)
+        return self.chance.choice(self._numbers)
+
+
+class Samples(Draws):
     """Draws samples for one property; the same property draws the same ones.
 
     `start` are as many frames as come before the first step. `found` has each letter seen so far, and where.
     """
 
     def __init__(self, specification: PropertySpecification, sources: Sources) -> None:
+        super().__init__([atom.condition for atom in specification.atoms], sources)
         self.specification = specification
-        self.sources = sources
         self.origins = Origins(specification, sources.signals)
         self.reach = self.origins.reach
-        self.chance = random.Random(0)
         self.found: dict[Letter, Frames] = {}
         self._letters: dict[Frames, Letter | None] = {}
         self._known: dict[Frames, dict[Letter, list[Frame]]] = {}
-        compared = [e for atom in specification.atoms for operand in operands(atom.condition) for e in _within(operand)]
-        conditions = [condition for atom in specification.atoms for condition in nested(atom.condition)]
-        margins = {condition.margin for condition in conditions if isinstance(condition, Comparison)}
-        constants = {e.value for e in compared if isinstance(e, Number)}
-        self._numbers = _interesting(constants, margins)
-        self._lengths = _lengths(compared, constants)
-        self._strings = [*dict.fromkeys(e.value for e in compared if isinstance(e, String)), "", "something else"]
         self.start = self._start() if self.reach <= LONGEST_HISTORY else ()
 
     def _start(self) -> Frames:
@@ -123,7 +163,7 @@ class Samples:
 
         Where values are taken at openings, often but one source differs, so that a scope stays or opens with another.
         """
-        following = [self.draw(), self._even(), *before[-1:]]
+        following = [self.draw(), self.even(), *before[-1:]]
         if self.origins.remembers and before:
             following += [self._varied(before[-1])] * 2
         return self.chance.choice(following)
@@ -132,10 +172,6 @@ class Samples:
         """`frame` with another value of one source."""
         signal = self.chance.choice(list(self.sources.signals))
         return Frame(self.sources.possible({**frame.sample, signal: self._value(signal.type)}))
-
-    def draw(self) -> Frame:
-        """One sample of every source."""
-        return Frame(self.sources.possible({signal: self._value(signal.type) for signal in self.sources.signals}))
 
     def letter(self, frames: Frames) -> Letter | None:
         """The letter of the last of `frames`, as many as reach back to `start`; None where something is NaN."""
@@ -199,41 +235,12 @@ class Samples:
             if edge.truth(low) != edge.truth(high):
                 yield edge.narrowed(base, signal, low, high)
 
-    def _even(self) -> Frame:
-        """A sample in which all numbers are the same, so that one differs where it is varied."""
-        number = self.chance.choice(self._numbers)
-        drawn = {s: number if s.type is ValueType.NUMBER else self._value(s.type) for s in self.sources.signals}
-        return Frame(self.sources.possible(drawn))
-
     def _even_on_topics(self) -> Frame:
         """A sample in which all numbers on a topic are the same: so a norm of several can be small, or none."""
         numbers = {topic: self.chance.choice(self._numbers) for topic in self.sources.topics()}
         evened = {s: numbers[p.field.topic] for s, p in self.sources.places.items() if s.type is ValueType.NUMBER}
         drawn = {s: self._value(s.type) for s in self.sources.signals if s not in evened}
         return Frame(self.sources.possible(evened | drawn))
-
-    def _value(self, type_: ValueType) -> Value:
-        return self._single(type_) if type_.element is None else self._array(type_.element)
-
-    def _array(self, type_: ValueType) -> Value:
-        """An array of one length or another; of few different elements, or of many."""
-        length = self.chance.choice(self._lengths)
-        drawn = [self._single(type_) for _ in range(min(length, self.chance.choice([1, 2, length])))]
-        return tuple(self.chance.choice(drawn) for _ in range(length))
-
-    def _single(self, type_: ValueType) -> Single:
-        match type_:
-            case ValueType.BOOLEAN:
-                return self.chance.random() < 1 / 2
-            case ValueType.STRING:
-                return self.chance.choice(self._strings)
-            case _:
-                return self._number()
-
-    def _number(self) -> float:
-        if self.chance.random() < 1 / 4:
-            return self.chance.gauss(0.0, 10.0)
-        return self.chance.choice(self._numbers)
 
 
 @dataclass(frozen=True, slots=True)

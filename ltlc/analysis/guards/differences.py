@@ -55,7 +55,7 @@ class Difference:
     """A run at whose end the guard of one file lets a command through, and the other one's does not, for a `reason`.
 
     Its `events` are messages on `topics`, or time passes, where that is None; each comes after one of the `delays`. The
-    first row of the `example` is before.
+    first row of the `example` is before. A run found `by_trying` has times instead.
     """
 
     passes: str
@@ -65,6 +65,7 @@ class Difference:
     topics: tuple[str | None, ...]
     delays: tuple[Nanoseconds, ...]
     example: Example | None
+    by_trying: bool = False
 
 
 class _View:
@@ -246,11 +247,11 @@ class Beside:
     def _common(self) -> dict[str, tuple[Diagram, Fallback]]:
         """By topic the first fallback that both sides have, with the letters after it."""
         found: dict[str, tuple[Diagram, Fallback]] = {}
-        left, right = ({(g.out, _content(f)) for g in v.side.guards for f in g.fallbacks} for v in self._views)
+        left, right = ({(g.out, content_of(f)) for g in v.side.guards for f in g.fallbacks} for v in self._views)
         sendings = iter(self._game.arena.fallbacks)
         for out, fallback in ((guard.out, fallback) for guard in self._guards for fallback in guard.fallbacks):
             effect = next(sendings).effect
-            if (out, _content(fallback)) in left & right:
+            if (out, content_of(fallback)) in left & right:
                 known = [(a, holds) for a, holds in effect.items() if isinstance(holds, bool)]
                 d = self._game.diagrams
                 led = self._game.all_of(self._game.atom(a) if h else d.negation(self._game.atom(a)) for a, h in known)
@@ -341,7 +342,8 @@ class Beside:
         return None
 
 
-def _content(fallback: Fallback) -> frozenset[object]:
+def content_of(fallback: Fallback) -> frozenset[object]:
+    """What only equal fallbacks have."""
     return frozenset(fallback.values.items())
 
 

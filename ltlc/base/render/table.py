@@ -43,7 +43,9 @@ def _leading(steps: Sequence[dict[str, Any]], loop: int | None) -> Iterator[list
 
 
 def shown(value: Any) -> str:
-    """A value as it is written in the language."""
+    """A value as it is written in the language; nothing if there is none yet."""
+    if value is None:
+        return ""
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, str):

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
 from ltlc.analysis.errors import NotDecidedError
 from ltlc.analysis.guards.differences import Beside, Difference, Side
 from ltlc.analysis.guards.reasons import Reasons
+from ltlc.analysis.guards.replaying import Replay
+from ltlc.analysis.guards.trying import Trial
+from ltlc.assurance.messages import Messages
 from ltlc.base.diagnostics import Diagnostic
 from ltlc.base.errors import UnusableInput
 from ltlc.base.limits import Budget
@@ -18,18 +20,17 @@ from ltlc.base.provenance import provenance
 from ltlc.base.render.table import example_lines
 from ltlc.base.source import Source
 from ltlc.dataclass import dataclass
+from ltlc.frontend.language import types_for
+from ltlc.inputs.messages.definitions import MessageTypes
 from ltlc.inputs.recordings.reading import ReadOptions
 from ltlc.interfaces.api.guard import guarding_of
 from ltlc.interfaces.api.prepare import Prepared, prepare, read
 from ltlc.monitoring.guarding.arrangement import Solved
 from ltlc.monitoring.guarding.compared import Compared
-from ltlc.monitoring.guarding.recording import GuardedRun, Guarding
-from ltlc.monitoring.judging.run import Judge, RunReport, readings
-from ltlc.runtime.guarding import Action
-from ltlc.runtime.times import SECOND
+from ltlc.monitoring.guarding.recording import Guarding
+from ltlc.monitoring.judging.run import Judge, RunReport
 from ltlc.semantics.encodings import EPISODE
 from ltlc.specification.arenas import Property
-from ltlc.specification.specification import topics_of
 
 MOST_LISTED = 10
 """So many commands of a recording are listed that only one guard lets through."""
@@ -40,13 +41,14 @@ class OutCompared:
     """The guards of two files that send on `out`: runs at whose end only one lets a command through, and recordings.
 
     A run without an example may not be one that can happen. If a run was not found, and there may be one, `undecided`
-    says why.
+    says why, and so many were `tried`.
     """
 
     out: str
     names: tuple[str, str]
     differences: tuple[Difference, ...]
     undecided: str
+    tried: int
     recordings: tuple[Compared, ...]
 
     def lines(self) -> Iterator[str]:
@@ -54,20 +56,29 @@ class OutCompared:
         yield f"guard of {self.out}"
         found = {each.passes: each for each in self.differences}
         for name, other in (self.names, self.names[::-1]):
+            yield ""
             if (difference := found.get(name)) is not None:
-                yield ""
                 lets = "lets" if difference.example is not None else "may let"
-                yield f"{name} {lets} a command through that {other} does not: {difference.reason}"
+                how = " (found by trying)" if difference.by_trying else ""
+                yield f"{name} {lets} a command through that {other} does not{how}: {difference.reason}"
                 yield from (f"  {line}" for line in _run_lines(difference))
-            elif not self.undecided:
-                yield ""
+                if difference.example is None:
+                    yield f"  no such run found: {self._effort}"
+            elif self.undecided:
+                yield f"no run found in which {name} lets a command through that {other} does not: {self._effort}"
+            else:
                 yield f"{name} lets nothing through that {other} does not, as long as they have done the same before"
         if self.undecided:
             yield ""
-            yield f"not compared: {self.undecided}"
+            yield f"not compared by a proof: {self.undecided}"
         for each in self.recordings:
             yield ""
             yield from each.lines(MOST_LISTED)
+
+    @property
+    def _effort(self) -> str:
+        """That a run was looked for."""
+        return f"{self.tried} tried; not decided"
 
     def document(self) -> dict[str, Any]:
         """It as JSON."""
@@ -75,6 +86,7 @@ class OutCompared:
             "out": self.out,
             "files": list(self.names),
             "undecided": self.undecided or None,
+            "tried": self.tried,
             "differences": [_document(each) for each in self.differences],
             "recordings": [each.document() for each in self.recordings],
         }
@@ -91,6 +103,7 @@ def _document(difference: Difference) -> dict[str, Any]:
         "passes": difference.passes,
         "refuses": difference.refuses,
         "reason": difference.reason,
+        "by_trying": difference.by_trying,
         "events": list(difference.events),
         "example": None if difference.example is None else difference.example.as_json(),
     }
@@ -135,13 +148,14 @@ def compare_guards(
     pairs = list(zip(files, guardings, strict=True))
     reports = [[_judged(*each, path, message_paths) for each in pairs] for path in recordings]
     judges = [Judge(each.compiled, each.specification) for each in files]
-    replays = {name: Replay(of, judge) for name, of, judge in zip(names, guardings, judges, strict=True)}
+    replays = [Replay(*each) for each in zip(names, guardings, judges, strict=True)]
+    known = [types_for(each.specification.source, message_paths, recordings)[0].messages for each in files]
+    messages = Messages(MessageTypes({**known[1], **known[0]}))
     found = []
     for out in (out for out in left if out in right):
         sides = _side(names[0], files[0], left[out]), _side(names[1], files[1], right[out])
-        differences, undecided = _differences(*sides, out, replays)
-        compared = [_compared(out, names, pair) for pair in reports]
-        found.append(OutCompared(out, names, tuple(differences), undecided, tuple(compared)))
+        compared = tuple(_compared(out, names, pair) for pair in reports)
+        found.append(_out_compared(*sides, out, Trial(replays, out, messages), compared))
     told = [d for each in files for d in each.diagnostics]
     return GuardsCompared(tuple(found), tuple(told), (files[0].specification.source, files[1].specification.source))
 
@@ -161,56 +175,21 @@ def _side(name: str, prepared: Prepared, some: Solved) -> Side:
     return Side(name, some.guards, properties, some.find_play)
 
 
-def _differences(left: Side, right: Side, out: str, runs: Mapping[str, Replay]) -> tuple[list[Difference], str]:
-    """Shortest runs at whose end only one lets a command through, or why they are not known."""
+def _out_compared(left: Side, right: Side, out: str, trial: Trial, recordings: tuple[Compared, ...]) -> OutCompared:
+    """What is known of all runs, by the game of both and, where that decides nothing, by trying."""
+    names, undecided = (left.name, right.name), ""
     try:
         beside = Beside(left, right, out)
-        found = beside.differences()
+        found = {each.passes: trial.checked(each) for each in beside.differences()}
+        if beside.is_partial:
+            undecided = "runs in which several clocks are running when one passes its bound"
     except NotDecidedError as error:
-        return [], str(error)
-    found = [each if _is_shown(each, runs) else replace(each, example=None) for each in found]
-    is_open = beside.is_partial and len(found) < len({left.name, right.name})
-    return found, "runs in which several clocks are running when one passes its bound" if is_open else ""
-
-
-def _is_shown(difference: Difference, runs: Mapping[str, Replay]) -> bool:
-    """Whether the example of a difference, if there is one, makes it."""
-    return runs[difference.passes].passes(difference) and not runs[difference.refuses].passes(difference)
-
-
-@dataclass(frozen=True)
-class Replay:
-    """Tries runs that were found on the guards of a file."""
-
-    guarding: Guarding
-    judge: Judge
-
-    def passes(self, difference: Difference) -> bool:
-        """Whether the guard lets the last command of a run through, of whose values there is an example."""
-        if difference.example is None:
-            return False
-        plan = self.judge.plan(())
-        topics = {name: topic for name in readings(plan) for topic in topics_of(self.judge.signals[name])}
-        outs = {guard.out: guard.raw for guard in self.guarding.specification.guards}
-        own = {name: name for name, topic in topics.items() if topic in outs}
-        run, time = GuardedRun(self.guarding, self.judge.signals, own, plan), SECOND
-        rows = [dict(zip(difference.example.signals, row, strict=True)) for row in difference.example.steps]
-        before = [topic for topic in dict.fromkeys(topics.values()) if topic not in (*outs, difference.topics[0])]
-        moves = zip(difference.topics, difference.delays, rows[1:], strict=True)
-        for topic, delay, row in [*((topic, 1, rows[0]) for topic in before), *moves]:
-            time += delay
-            run.act(time)
-            if topic is not None:
-                values = {name: _sample(row[name]) for name, of in topics.items() if of == topic and name in row}
-                run.row(time, values, (outs.get(topic, topic),))
-        return bool(run.done) and run.done[-1].deed.action is Action.PASSED
-
-
-def _sample(value: Any) -> Any:
-    """A value of an example as the runtime has it."""
-    if isinstance(value, list):
-        return tuple(map(_sample, value))
-    return float(value) if isinstance(value, int) and not isinstance(value, bool) else value
+        found, undecided = {}, str(error)
+    is_open = {name for name in names if (found[name].example is None if name in found else undecided)}
+    tried = trial.differences(is_open)
+    is_open -= tried.keys()
+    differences = tuple({**found, **tried}.values())
+    return OutCompared(out, names, differences, undecided if is_open else "", trial.tried, recordings)
 
 
 def _judged(prepared: Prepared, guarding: Guarding, path: Path, message_paths: Sequence[str]) -> RunReport:

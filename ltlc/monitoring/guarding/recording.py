@@ -210,6 +210,10 @@ class GuardedRun:
         self._arranged = [(some, Arrangement(some, properties, plan)) for some in guarding.solved]
         self._guards: Guards | None = None
 
+    def restart(self) -> None:
+        """Begin another run."""
+        self.taken, self.done, self._guards = [], [], None
+
     def row(self, time: Nanoseconds, samples: Values, topics: Sequence[str]) -> None:
         """What came in at once: messages on other topics first, then commands."""
         messages: dict[str, dict[str, sampling.Value]] = {}
