@@ -6,6 +6,7 @@ import json
 import random
 import re
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import cache
 from itertools import permutations
 from pathlib import Path
@@ -16,6 +17,7 @@ from effort import share_of
 import ltlc
 from benchmarks.guarded import CMD, EXAMPLES, SCAN, SCANS, SPEEDS, Driven, Example
 from ltlc.analysis.examples import Example as Shown
+from ltlc.analysis.guards.trying import Trial
 from ltlc.automata import Budget
 from ltlc.cli import main
 from ltlc.interfaces.api.compare_guards import OutCompared, compare_guards
@@ -121,7 +123,11 @@ def test_the_run_that_is_shown_makes_the_difference(folder: Path, one: str, two:
 
 
 @pytest.mark.parametrize("name", TRIED)
-def test_a_run_is_found_by_trying_where_the_game_of_both_finds_none(tmp_path: Path, name: str) -> None:
+def test_a_run_is_found_by_trying_where_the_game_of_both_finds_none(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str
+) -> None:
+    # Whether z3 finds numbers within its limits also depends on what it was asked before.
+    monkeypatch.setattr(Trial, "checked", lambda _, difference: replace(difference, example=None))
     for file, text in zip(("one", "two"), TRIED[name], strict=True):
         (tmp_path / file).write_text(text, encoding="utf-8")
     first, *_ = compare_guards(tmp_path / "one", tmp_path / "two", (), (), Budget()).topics
