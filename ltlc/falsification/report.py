@@ -11,7 +11,7 @@ from ltlc.base.source import Source
 from ltlc.falsification.assignment import Assignment, text_of
 from ltlc.falsification.falsify import Falsification
 from ltlc.falsification.simulation import Simulated
-from ltlc.runtime.reports import figure
+from ltlc.runtime.reports import counted, figure
 from ltlc.semantics.verdicts import Verdict
 
 
@@ -82,7 +82,7 @@ def _closest(made: Falsification, label: str) -> Simulated | None:
 
 
 def _lines(made: Falsification) -> Iterator[str]:
-    count = _counted(len(made.simulations), "simulation")
+    count = counted(len(made.simulations), "simulation")
     if made.found is not None:
         yield from _found_lines(made, made.found)
     elif made.exhaustive:
@@ -93,7 +93,7 @@ def _lines(made: Falsification) -> Iterator[str]:
         yield from (f"  {label}: {_state(made, label)}" for label in _labels(made))
     if made.failed:
         first = made.failed[0]
-        yield f"{_counted(len(made.failed), 'simulation')} failed, the first of them {first.number}: {first.failure}"
+        yield f"{counted(len(made.failed), 'simulation')} failed, the first of them {first.number}: {first.failure}"
         yield f"  {first.assignment}"
 
 
@@ -108,7 +108,7 @@ def _found_lines(made: Falsification, found: Simulated) -> Iterator[str]:
         yield "The same parameters did not violate it again, so they were not shrunk: the simulation is not repeatable."
         shown = found
     else:
-        yield f"Shrunk in {_counted(made.shrinking, 'more simulation')}:"
+        yield f"Shrunk in {counted(made.shrinking, 'more simulation')}:"
     yield from _assigned(made, shown.assignment)
     assert shown.session is not None
     track = next(track for track in shown.session.tracks if track.property.label == label)
@@ -141,9 +141,5 @@ def _state(made: Falsification, label: str) -> str:
     if idle := _with(made, label, Verdict.NOT_STARTED):
         told.append("never started" if len(idle) == len(made.simulations) else f"not started in {len(idle)}")
     if owed := _with(made, label, Verdict.PRESUMABLY_VIOLATED):
-        told.append(f"open at the end of {_counted(len(owed), 'simulation')}, as of {owed[0].number}")
+        told.append(f"open at the end of {counted(len(owed), 'simulation')}, as of {owed[0].number}")
     return "; ".join(told)
-
-
-def _counted(number: int, what: str) -> str:
-    return f"{number} {what}{'' if number == 1 else 's'}"
