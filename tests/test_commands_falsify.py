@@ -8,6 +8,7 @@ import re
 import sys
 import time
 from collections.abc import Callable
+from errno import ENOSPC
 from pathlib import Path
 
 import pytest
@@ -15,6 +16,7 @@ from bag_support import FORMS, odometry
 
 from ltlc.cli import main
 from ltlc.falsification.command import Command, command_of
+from ltlc.falsification.keeping import keep
 from ltlc.falsification.parameters import space_of
 from ltlc.falsification.simulation import SimulationError
 
@@ -113,6 +115,26 @@ def test_a_folder_of_an_earlier_search_is_replaced_and_no_other(falsify: Falsify
     assert "mine cannot be written: it contains something other than what ltlc falsify keeps" in capsys.readouterr().err
     assert falsify("--keep", "no/such/folder") == 2
     assert sorted(os.listdir()) == ["falsified", "mine", "props.txt", "sim.py"]
+
+
+def test_what_was_kept_before_stays_if_its_place_cannot_be_taken(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    made, folder = tmp_path / "made", tmp_path / "kept"
+    made.mkdir()
+    keep(made, folder, "first")
+    rename = os.rename
+
+    def full(source: Path, target: Path) -> None:
+        if source.name == "made":
+            raise OSError(ENOSPC, "no space left")
+        rename(source, target)
+
+    monkeypatch.setattr(os, "rename", full)
+    with pytest.raises(OSError, match="no space left"):
+        keep(made, folder, "second")
+    assert (folder / "falsified.json").read_text() == "first"
+    assert sorted(os.listdir(tmp_path)) == ["kept", "made"]
 
 
 def test_where_nothing_is_found_nothing_is_kept(falsify: Falsify, capsys: Said) -> None:

@@ -26,6 +26,12 @@ def keep(simulated: Path, folder: Path, report: str) -> None:
         made = Path(aside, "made")
         shutil.copytree(simulated, made)
         (made / REPORT).write_text(report, encoding="utf-8")
+        before = Path(aside, "before")
         if folder.exists():
-            os.rename(folder, Path(aside, "before"))
-        os.rename(made, folder)
+            os.rename(folder, before)
+        try:
+            os.rename(made, folder)
+        except OSError:
+            if before.exists():
+                os.rename(before, folder)
+            raise
