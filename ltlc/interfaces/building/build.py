@@ -16,7 +16,7 @@ from ltlc.compiler import Compiled
 from ltlc.dataclass import dataclass
 from ltlc.frontend.language import types_for
 from ltlc.interfaces.building.guards import NoRegionError, difference, guard_entries, guard_programs
-from ltlc.interfaces.building.targets import Made, Target, UnfitError
+from ltlc.interfaces.building.targets import Made, Target, UnfitError, Unit
 from ltlc.interfaces.building.wording import (
     GATE_MEMORY,
     GATE_SECONDS,
@@ -109,7 +109,7 @@ def build(
         guards = guard_programs(specification, compiled, entries) if entries else []
     except NoRegionError as error:
         raise UnfitError([_without_guards(specification, str(error))]) from None
-    made = target.make(compiled, specification, messages, guards)
+    made = target.make(Unit(specification, compiled, messages, guards))
     if specification.guards and made.programs is not None and not guards:
         reason = f"the target `{target.name}` has no guards: the output would monitor, and hold back nothing"
         raise UnfitError([_without_guards(specification, reason)])

@@ -28,10 +28,9 @@ from ltlc.compiler import Compiled
 from ltlc.dataclass import dataclass
 from ltlc.inputs.messages.texts import text_of
 from ltlc.inputs.recordings.bags.written import written
-from ltlc.interfaces.building.targets import Made, UnfitError
+from ltlc.interfaces.building.targets import Made, UnfitError, Unit
 from ltlc.monitoring.judging.output import Whole, mcap_of
 from ltlc.monitoring.judging.run import Judge
-from ltlc.program.guards import GuardProgram
 from ltlc.runtime.reports import topic_names
 from ltlc.runtime.times import seconds, seconds_text
 from ltlc.semantics.durations import Nanoseconds
@@ -77,23 +76,18 @@ class Tests:
             if any(self.path.iterdir()) and not (self.path / LIST).is_file():
                 raise OSError("the folder contains something other than tests made by ltlc")
 
-    def make(
-        self,
-        compiled: Sequence[Compiled],
-        specification: Specification,
-        messages: Messages,
-        guards: Sequence[GuardProgram] = (),
-    ) -> Made:
+    def make(self, unit: Unit) -> Made:
         """The recordings, which are no code; guards hold back nothing of them. Raises UnfitError for `each`."""
+        specification, compiled = unit.specification, unit.compiled
         if unfit := [each for each in compiled if each.specification.slicing is not None]:
             raise UnfitError([_for_each_id(specification, each) for each in unfit])
         settings = Settings(specification.rate, specification.timeout)
-        covers = [covering(each, messages, settings) for each in compiled]
+        covers = [covering(each, unit.messages, settings) for each in compiled]
         labels = [each.specification.label for each in compiled]
         return Made(
             None,
             None,
-            lambda: _files(self.path, compiled, specification, messages, covers),
+            lambda: _files(self.path, unit, covers),
             "\n".join(f"{label}: {_said(cover)}" for label, cover in zip(labels, covers, strict=True)),
         )
 
@@ -109,14 +103,9 @@ def _said(cover: Cover) -> str:
     return f"{cover}{missing}"
 
 
-def _files(
-    folder: Path,
-    compiled: Sequence[Compiled],
-    specification: Specification,
-    messages: Messages,
-    covers: Sequence[Cover],
-) -> Mapping[Path, str | bytes]:
+def _files(folder: Path, unit: Unit, covers: Sequence[Cover]) -> Mapping[Path, str | bytes]:
     """All recordings, and the list of what is expected. Raises WrongRunError."""
+    specification, compiled = unit.specification, unit.compiled
     found: dict[Path, str | bytes] = {}
     expected: list[dict[str, Any]] = []
     judge, made_of = Judge(compiled, specification, finds_all=False), provenance([specification.source])
@@ -128,7 +117,7 @@ def _files(
         for number, of in enumerate(cover.runs, 1):
             files: dict[str, str | bytes] = {
                 f"{name}_{number}.csv": table(of),
-                f"{name}_{number}.mcap": bag(of, topics, messages, made_of),
+                f"{name}_{number}.mcap": bag(of, topics, unit.messages, made_of),
             }
             verdict, changes = _expected(expectation, of)
             _check(judge, files, each.specification.label, verdict)

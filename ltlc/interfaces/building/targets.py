@@ -30,6 +30,16 @@ _NODE = "ROS 2"
 
 
 @dataclass(frozen=True)
+class Unit:
+    """What one output is made of: the properties of `specification` that it monitors, and what its guards run."""
+
+    specification: Specification
+    compiled: Sequence[Compiled]
+    messages: Messages
+    guards: Sequence[GuardProgram] = ()
+
+
+@dataclass(frozen=True)
 class Made:
     """The code of each property, as what can be run and as text, None where there is none; and what comes of it.
 
@@ -71,14 +81,8 @@ class Target(Protocol):
         """Raise OSError if the output cannot be written."""
         ...
 
-    def make(
-        self,
-        compiled: Sequence[Compiled],
-        specification: Specification,
-        messages: Messages,
-        guards: Sequence[GuardProgram] = (),
-    ) -> Made:
-        """The code, that of `guards` included if the target has guards. Raises UnfitError."""
+    def make(self, unit: Unit) -> Made:
+        """The code, that of the guards included if the target has guards. Raises UnfitError."""
         ...
 
 
@@ -114,29 +118,22 @@ class _Text:
     def refuse(self) -> None:
         refuse_unwritable(self.path)
 
-    def make(
-        self,
-        compiled: Sequence[Compiled],
-        specification: Specification,
-        messages: Messages,
-        guards: Sequence[GuardProgram] = (),
-    ) -> Made:
+    def make(self, unit: Unit) -> Made:
         try:
-            text = backends.emit(self.name, compiled, specification, guards)
+            text = backends.emit(self.name, unit.compiled, unit.specification, unit.guards)
         except NotInTargetError:
             emit = partial(backends.emit, self.name)
-            raise UnfitError(
-                _unfit(_NODE if self.name == "ros2" else self.name.capitalize(), emit, specification, compiled)
-            ) from None
-        code = programs(self.name, text, compiled, specification, messages)
-        read = None if code is None else cache(partial(_written, text, compiled, guards))
+            raise UnfitError(_unfit(_NODE if self.name == "ros2" else self.name.capitalize(), emit, unit)) from None
+        code = programs(self.name, text, unit.compiled, unit.specification, unit.messages)
+        read = None if code is None else cache(partial(_written, text, unit))
         return Made(code, read, lambda: {self.path: text})
 
 
-def _written(text: str, compiled: Sequence[Compiled], guards: Sequence[GuardProgram]) -> Sequence[Written | Difference]:
+def _written(text: str, unit: Unit) -> Sequence[Written | Difference]:
     from ltlc.assurance.reading.files import written  # takes time, and is asked for in a child
 
-    return written(text, [each.machine for each in compiled], [each.specification for each in compiled], guards)
+    compiled = unit.compiled
+    return written(text, [each.machine for each in compiled], [each.specification for each in compiled], unit.guards)
 
 
 @dataclass(frozen=True)
@@ -156,47 +153,34 @@ class _C:
         for path in self.told:
             refuse_unwritable(path)
 
-    def make(
-        self,
-        compiled: Sequence[Compiled],
-        specification: Specification,
-        messages: Messages,
-        guards: Sequence[GuardProgram] = (),
-    ) -> Made:
+    def make(self, unit: Unit) -> Made:
         from ltlc.assurance.c_programs import c_programs  # takes time, as what reads C does
         from ltlc.assurance.reading.c.files import written as written_in_c
         from ltlc.backends import c
 
+        specification, compiled = unit.specification, unit.compiled
         try:
             files = c.emit(compiled, specification, self.path.stem)
         except NotInTargetError:
-            raise UnfitError(_unfit("C", c.emit, specification, compiled)) from None
+            raise UnfitError(_unfit("C", c.emit, unit)) from None
         texts = dict(zip(self.told, (files.source, files.header, files.wrapper), strict=True))
+        own = (specification.rate, specification.timeout)
         made = Made(
-            c_programs(files, compiled, specification, messages),
-            cache(
-                partial(written_in_c, files.header, files.source, compiled, specification.rate, specification.timeout)
-            ),
+            c_programs(files, compiled, specification, unit.messages),
+            cache(partial(written_in_c, files.header, files.source, compiled, *own)),
             lambda: texts,
             f"worst case: {files.bound}",
         )
-        return self._guarded(made, files, compiled, specification, messages, guards) if guards else made
+        return self._guarded(made, files, unit) if unit.guards else made
 
-    def _guarded(
-        self,
-        made: Made,
-        files: c.Files,
-        compiled: Sequence[Compiled],
-        specification: Specification,
-        messages: Messages,
-        guards: Sequence[GuardProgram],
-    ) -> Made:
+    def _guarded(self, made: Made, files: c.Files, unit: Unit) -> Made:
         """With the files of guards. Raises UnfitError."""
         from ltlc.assurance.c_guard import flaw
         from ltlc.backends.c.guards import emit
 
+        specification = unit.specification
         try:
-            emitted = emit(files, guards)
+            emitted = emit(files, unit.guards)
         except NotInTargetError as error:
             message = f"the guard of `{specification.guards[0].out}` cannot be written in C: it has {error}"
             span = specification.guards[0].span
@@ -210,7 +194,7 @@ class _C:
                 [made.note, *(f"{each.bound} a call of the guard of {' and '.join(each.commands)}" for each in emitted)]
             ),
             beside=[*texts],
-            flaw=lambda: flaw(files, emitted, guards, compiled, specification, messages),
+            flaw=lambda: flaw(files, emitted, unit.guards, unit.compiled, specification, unit.messages),
         )
 
 
@@ -228,33 +212,24 @@ class _Rust:
     def refuse(self) -> None:
         refuse_unwritable(self.path)
 
-    def make(
-        self,
-        compiled: Sequence[Compiled],
-        specification: Specification,
-        messages: Messages,
-        guards: Sequence[GuardProgram] = (),
-    ) -> Made:
+    def make(self, unit: Unit) -> Made:
         from ltlc.assurance.c_programs import rust_programs  # takes time, as what reads Rust does
         from ltlc.assurance.reading.rust import written as written_in_rust
         from ltlc.backends import rust
 
+        specification, compiled = unit.specification, unit.compiled
         try:
             file = rust.file_of(compiled, specification)
         except NotInTargetError:
-            raise UnfitError(_unfit("Rust", rust.emit, specification, compiled)) from None
+            raise UnfitError(_unfit("Rust", rust.emit, unit)) from None
         own = (specification.rate, specification.timeout)
         read = cache(partial(written_in_rust, file.text, file.c.header, file.c.source, compiled, *own))
-        return Made(rust_programs(file, compiled, specification, messages), read, lambda: {self.path: file.text})
+        return Made(rust_programs(file, compiled, specification, unit.messages), read, lambda: {self.path: file.text})
 
 
-def _unfit(
-    language: str,
-    emit: Callable[[Sequence[Compiled], Specification], object],
-    specification: Specification,
-    compiled: Sequence[Compiled],
-) -> list[Diagnostic]:
+def _unfit(language: str, emit: Callable[[Sequence[Compiled], Specification], object], unit: Unit) -> list[Diagnostic]:
     """A diagnostic for each property that cannot be written in a language yet, or not beside the others."""
+    specification, compiled = unit.specification, unit.compiled
     of_all = next((each for each in compiled if each.specification.slicing is not None), compiled[0])
     for tried in ([(each, [each]) for each in compiled], [(of_all, compiled)]):
         found = []
@@ -293,21 +268,15 @@ class _Package:
     def refuse(self) -> None:
         _ = self.metadata
 
-    def make(
-        self,
-        compiled: Sequence[Compiled],
-        specification: Specification,
-        messages: Messages,
-        guards: Sequence[GuardProgram] = (),
-    ) -> Made:
+    def make(self, unit: Unit) -> Made:
         from ltlc.backends import ament
 
-        node = _Text("ros2", self.path).make(compiled, specification, messages, guards)
+        node = _Text("ros2", self.path).make(unit)
 
         def files() -> Mapping[Path, str]:
             monitored = [each for each in node.programs or () if isinstance(each, Monitored)]
-            runs = told_runs(compiled, monitored, messages)
-            made = ament.emit(compiled, specification, runs, self.metadata, guards)
+            runs = told_runs(unit.compiled, monitored, unit.messages)
+            made = ament.emit(unit.compiled, unit.specification, runs, self.metadata, unit.guards)
             return {self.path / name: text for name, text in made.items()}
 
         return Made(node.programs, node.written, files)
