@@ -24,6 +24,7 @@ MODULES = (
     "ltlc.backends.ros2.node.snapshot",
     "ltlc.backends.ros2.node.diagnosis",
     "ltlc.backends.ros2.node.locks",
+    "ltlc.backends.ros2.node.absences",
     "ltlc.backends.ros2.node.watch",
     "ltlc.backends.ros2.node.life",
 )

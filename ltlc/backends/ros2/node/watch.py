@@ -10,6 +10,7 @@ from typing import Any
 
 from rclpy.node import Node
 
+from ltlc.backends.ros2.node.absences import Absences
 from ltlc.backends.ros2.node.clock import RosTime
 from ltlc.backends.ros2.node.commands import Commands
 from ltlc.backends.ros2.node.deeds import Deeds
@@ -24,7 +25,7 @@ from ltlc.backends.ros2.node.topics import GuardedTopic, Topic
 from ltlc.backends.ros2.node.watchdog import UNUSABLE, Pulse
 from ltlc.runtime.guarding import Deed, Values
 from ltlc.runtime.properties import Change
-from ltlc.runtime.reports import counted, exit_code, figure, sentence, summary
+from ltlc.runtime.reports import counted, exit_code, figure, summary
 from ltlc.runtime.rows import ByRows
 from ltlc.runtime.sampling import Value
 from ltlc.runtime.session import Plan, Session
@@ -56,9 +57,6 @@ class Watch:
     REST = 10
     """No diagnosis follows another for so many times as long as that one took."""
     DISCOVERY = 3.0
-    PATIENCE = 5.0
-    SILENCE = 30.0
-    """How often, in s, topics are named that have been silent for as long."""
     KEPT = 10_000
     THOROUGH = 10
     BACKLOG = 1_000_000
@@ -114,11 +112,10 @@ class Watch:
             heard = self._listeners
             self._extracts = Extracts(node, cut, self._clock, labels, heard, outs)
         self._is_incomplete = self._has_failed = False
-        self._began = time.monotonic()
-        self._discovered = self._began + self.DISCOVERY
-        self._next_diagnosis = self._next_housekeeping = self._rested = self._began
-        self._has_warned = False
-        self._next_silence = self._began + self.SILENCE
+        self._absences = Absences(node, self._listeners)
+        began = time.monotonic()
+        self._discovered = began + self.DISCOVERY
+        self._next_diagnosis = self._next_housekeeping = self._rested = began
         self._new_session()
         self._news = set[str]().union(
             *(news(self._session, track) for track in self._session.tracks)
@@ -322,12 +319,7 @@ class Watch:
         self._clock.look()
         start = time.monotonic()
         is_due = start >= max(self._next_diagnosis, self._rested)
-        for listener in self._listeners:
-            heard = self._session.messages[listener.topic.name]
-            listener.silence.look(heard)
-            if is_due or not heard:
-                listener.fit(heard)
-                self._note_misfit(listener)
+        self._absences.look(self._session, is_due)
         for bypass in self._commands.look(is_due):
             self._node.get_logger().error(bypass)
         if self._extracts:
@@ -339,41 +331,7 @@ class Watch:
             self._diagnose()
             now = time.monotonic()
             self._rested = now + self.REST * (now - start)
-        if not self._has_warned and time.monotonic() > self._began + self.PATIENCE:
-            self._has_warned = True
-            self._warn_of_silence()
-        if time.monotonic() > self._next_silence:
-            self._next_silence = time.monotonic() + self.SILENCE
-            self._say_what_is_silent()
-
-    def _note_misfit(self, listener: Listener) -> None:
-        """Have reports say if a topic is silent as its messages have another type."""
-        absences, name = self._session.absences, listener.topic.name
-        absences.pop(name, None)
-        if listener.misfit:
-            absences[name] = listener.misfit
-
-    def _say_what_is_silent(self) -> None:
-        """Log in one line the topics on which nothing came, or not for `SILENCE` s."""
-        silent = []
-        for listener in self._listeners:
-            silence = listener.silence
-            is_long = silence.is_unusual and silence.seconds >= self.SILENCE
-            if is_long or silence.seconds < 0:
-                text = f"no message on {listener.full_name}{silence.text}"
-                silent.append(listener.misfit or text)
-        if silent:
-            self._node.get_logger().warning("; ".join(silent))
-
-    def _warn_of_silence(self) -> None:
-        """Say once, early enough to be fixed, what has not started."""
-        waiting = [
-            sentence(self._session, track)
-            for track in self._session.tracks
-            if track.verdict is Verdict.NOT_STARTED
-        ]
-        for text in (*waiting, *self._remarks()):
-            self._node.get_logger().warning(text)
+        self._absences.warn(self._session, self._remarks)
 
     def _remarks(self) -> list[str]:
         """What is amiss, or may be."""
