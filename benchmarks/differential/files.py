@@ -78,11 +78,15 @@ def is_bag(form: str) -> bool:
 
 
 def bag_forms(rows: Sequence[Row]) -> list[str]:
-    """Forms of bags that can hold the rows: one message each; in ROS 1 those of one time have no order."""
+    """Forms of bags that can hold the rows: one message each.
+
+    In ROS 1 those of one time have no order, and a marker has other fields.
+    """
     if any(len(row.messages) != 1 for row in rows):
         return []
     is_strict = len({row.time for row in rows}) == len(rows)
-    return [form for form in FORMS if form != "ros1" or is_strict]
+    has_markers = any("/marks" in row.messages for row in rows)
+    return [form for form in FORMS if form != "ros1" or (is_strict and not has_markers)]
 
 
 def write(form: str, folder: Path, of: Monitors, recording: Recording) -> Path:
