@@ -100,8 +100,16 @@ def assert_as_pyulog(path: Path) -> None:
     assert {topic for topic, of in storage.topics.items() if of.count} == {*there, "/fmu/out/parameters"} & {
         *storage.topics
     }
+    if storage.topics.get("/fmu/out/parameters"):
+        found = columns(storage, "/fmu/out/parameters")
+        del found[""]
+        latest = peer.initial_parameters | {name: value for _, name, value in peer.changed_parameters}
+        assert {name: values[-1] for name, values in found.items()} == latest
+        assert {name: values[0] for name, values in found.items() if name in peer.initial_parameters} == (
+            peer.initial_parameters
+        )
     recent = [time for data in there.values() for time in data["timestamp"].astype(np.int64) * 1000]
-    first = min((time for time in recent if time >= begin - RECENT), default=begin)
+    first = min([begin, *(time for time in recent if time >= begin - RECENT)])
     for topic, data in there.items():
         times = data["timestamp"].astype(np.int64) * 1000
         times[times < begin - RECENT] = first
@@ -179,6 +187,7 @@ def test_parameters_are_a_topic_with_a_message_at_the_beginning_and_at_each_chan
 ) -> None:
     log = speeds([])
     log.parameter("WHEEL_MAX", 2.5)
+    log.parameter("WHEEL_SIZE", 0.5)
     log.parameter("WHEEL_ON", 1)
     log.message(0, struct.pack("<Qf", 0, 2.0))
     log.message(0, struct.pack("<Qf", 10_000, 2.05))
@@ -192,6 +201,15 @@ def test_parameters_are_a_topic_with_a_message_at_the_beginning_and_at_each_chan
     assert code == 1
     assert "speed > most: true, 2.2 > 2.1 by 0.1" in printed
     assert "At +0.02 s (step 4)" in printed
+
+
+def test_a_signalling_nan_is_a_missing_value_without_a_warning(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    log = speeds([(0, 1.0)])
+    log.message(0, struct.pack("<Q", 10_000) + bytes.fromhex("0100a07f"))
+    code, printed = judged(tmp_path, f"{SPEED}never speed > 2\n", log.save(tmp_path / "flight.ulg"), capsys)
+    assert (code, printed) == (0, "line 2: presumably satisfied; 1 step; 1 step left out: a value was NaN\n")
 
 
 def test_a_message_from_before_the_log_keeps_its_time_unless_it_is_old(

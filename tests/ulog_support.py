@@ -86,7 +86,7 @@ def speeds(samples: Sequence[tuple[int, float]], begin: int = 0) -> LogWriter:
 
 
 def random_log(chance: random.Random) -> LogWriter:
-    """Formats inside one another, arrays, padding, instances; messages of topics not in the order of their times."""
+    """Formats in one another, arrays, padding, instances, parameters; messages of topics not in the order of time."""
     log = LogWriter(chance.randrange(2_000_000))
     formats: dict[str, list[tuple[str, int]]] = {}
     topics: list[tuple[str, list[tuple[str, str, int]]]] = []
@@ -101,6 +101,8 @@ def random_log(chance: random.Random) -> LogWriter:
         formats[name] = [(kind, count or 1) for kind, _, count in fields]
         if TIME in fields:
             topics.append((name, fields))
+    for _ in range(chance.randint(0, 5)):
+        _set_parameter(chance, log)
     for number, (name, _) in enumerate(topics):
         log.subscribe(name, number)
         log.subscribe(name, 10 + number, instance=1)
@@ -112,7 +114,14 @@ def random_log(chance: random.Random) -> LogWriter:
         raw[time : time + 8] = struct.pack("<Q", chance.randrange(3_000_000))
         padding = fields[-1][2] if fields[-1][1] == "_padding0" else 0
         log.message(chance.choice([number, 10 + number]), bytes(raw[: len(raw) - padding]))
+    for _ in range(chance.randint(0, 2)):
+        _set_parameter(chance, log)
     return log
+
+
+def _set_parameter(chance: random.Random, log: LogWriter) -> None:
+    number = chance.randrange(4)
+    log.parameter(f"P_{number}", chance.choice([chance.randint(-9, 9), 2**24 + 1]) if number % 2 else chance.random())
 
 
 def _field(chance: random.Random, formats: Mapping[str, object], place: int) -> tuple[str, str, int]:

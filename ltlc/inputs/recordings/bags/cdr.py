@@ -324,4 +324,5 @@ def _as_kept(values: Array, base: str) -> Array:
         truths: Array = values != 0
         return truths
     kind = SCALARS[base]
-    return values.astype(kind if kind in _LONGS else np.float64, copy=False)
+    with np.errstate(invalid="ignore"):  # a signalling NaN is one like any other
+        return values.astype(kind if kind in _LONGS else np.float64, copy=False)

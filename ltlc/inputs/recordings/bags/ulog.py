@@ -166,7 +166,9 @@ class ULogStorage:
 
     def _messages_of_parameters(self) -> Messages:
         """All parameters at the beginning of the log, and after each change; one that comes later was as it is then."""
-        values = {each.name: each.value for each in reversed(self._scan.log.parameters)}
+        values: dict[str, bytes] = {}
+        for each in self._scan.log.parameters:
+            values.setdefault(each.name, each.value)
         found: dict[Nanoseconds, bytes] = {}
         for time, changes in groupby(self._scan.log.parameters, lambda each: self._scan.time(each.since)):
             values |= {each.name: each.value for each in changes}
