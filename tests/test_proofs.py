@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import random
 import re
 import shutil
@@ -12,6 +13,7 @@ from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 from cases import TABLE
 from control_mutants import control_mutants
@@ -37,6 +39,7 @@ from quick_gate import quick_gate
 from strategies import alphabets, properties
 from test_semantics_certificate_text import SPEEDING, STOP_SIGN, TEXT, entry, mangled
 from test_semantics_certificate_time import TEXT as TIMED
+from test_semantics_robustness import measured_run
 from timed import Draw, ordinary_atoms
 from timed_cases import TABLE as TIMED_TABLE
 
@@ -46,6 +49,9 @@ from ltlc.assurance.evidence.parsing import parsed
 from ltlc.assurance.evidence.reader import Read
 from ltlc.assurance.pairs import pairs_of
 from ltlc.cli import main
+from ltlc.monitoring.columns.robustness import still_possible
+from ltlc.monitoring.columns.series import UnsupportedError
+from ltlc.monitoring.columns.timeline import Timeline
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.arenas import Arena
 from ltlc.semantics.certificate import Certificate, Place, check, is_run, possible
@@ -57,11 +63,13 @@ from ltlc.semantics.encodings import ENCODINGS, EPISODE, Encoding, ManyClocksErr
 from ltlc.semantics.finite import holds
 from ltlc.semantics.following import follows_monitor
 from ltlc.semantics.lasso import holds_on_lasso
-from ltlc.semantics.ltl import TRUE, And, Atom, Not
-from ltlc.semantics.properties import Property
+from ltlc.semantics.ltl import TRUE, And, Atom, Formula, Not
+from ltlc.semantics.properties import Property, Within, children, predicates
 from ltlc.semantics.region_check import objection
 from ltlc.semantics.region_reader import guards_of, read_region
 from ltlc.semantics.reset_machine import ResetMachine
+from ltlc.semantics.robustness import held, robustness, with_past
+from ltlc.semantics.timed_atoms import News, atoms_within
 from ltlc.semantics.verdicts import Verdict
 from ltlc.semantics.words import Lasso
 
@@ -718,3 +726,80 @@ def test_the_extracted_judge_reads_evidence_of_several_recordings(certify: Path,
     code, said = judged(certify, tmp_path, certificates, document * 3)
     assert (code, len(said)) == (0, 3)
     assert judged(certify, tmp_path, certificates, document + document[:-1])[0] == 2
+
+
+MEASURED = """From Coq Require Import List ZArith.
+Import ListNotations.
+Require Import Properties Robustness Bands.
+Definition at_instants (rows : list (list margin)) k a := nth a (nth k rows []) Lowest.
+"""
+
+
+def in_coq(part: Property | Formula, atoms: Sequence[str]) -> str:
+    """A term of Coq, whose constructors have the names of the classes here."""
+    match part:
+        case Atom(name):
+            return f"(PAtom {atoms.index(name)})"
+        case Within(duration, body):
+            return f"(Within 0 {duration} {in_coq(body, atoms)})"
+        case _:
+            parts = (in_coq(getattr(part, name), atoms) for name in part.__match_args__)
+            return f"({'P' * isinstance(part, Formula)}{type(part).__name__} {' '.join(parts)})"
+
+
+def margin_in_coq(found: float) -> str:
+    """All that are drawn are halves."""
+    return f"(Finite ({int(found * 2)}))" if math.isfinite(found) else "Highest" if found > 0 else "Lowest"
+
+
+def has_interval(property_: Property) -> bool:
+    """Whether there is one inside it, which is no property of Coq."""
+    return any(has_interval(each) or (isinstance(each, Within) and each.start > 0) for each in children(property_))
+
+
+def measured_in_coq(seed: int) -> Iterator[str]:
+    """What Python says of the beginning of a run, as equations in Coq: its robustness, and what is still possible."""
+    property_, steps, until, past, seen = measured_run(seed)
+    if has_interval(property_):
+        return
+    chance = random.Random(seed)
+    if seed % 3 == 0 and not (isinstance(property_, Within) and property_.start):
+        property_ = Within(5, property_, chance.randrange(1, 4))
+    count = chance.randrange(1, len(steps) + 1)
+    steps, until = steps[:count], steps[count].time if count < len(steps) else until
+    news = {each.name for part in predicates(property_) for each in atoms_within(part) if isinstance(each, News)}
+    run = with_past(held(steps, until, news), past, seen.session)
+    atoms = sorted(run[0].margins)
+    rows = "; ".join(f"[{'; '.join(margin_in_coq(each.margins[a]) for a in atoms)}]" for each in run)
+    times = "; ".join(str(each.time - run[0].time) for each in run)
+    of = f"(at_instants [{rows}]) (fun k => nth k [{times}] 0) {len(run)}"
+    yield equation(of, "None", property_, atoms, robustness(run, property_))
+    margins = {name: np.array([step.margins[name] for step in steps]) for name in steps[0].margins}
+    line = Timeline(np.array([step.time for step in steps]), until)
+    with suppress(UnsupportedError):
+        low, high = still_possible(property_, line, margins, dict.fromkeys(news, seen.session))
+        yield equation(of, "(Some Lowest)", property_, atoms, low)
+        yield equation(of, "(Some Highest)", property_, atoms, high)
+
+
+def equation(run: str, future: str, property_: Property, atoms: Sequence[str], found: float) -> str:
+    """That this is what is `found`."""
+    text = in_coq(property_, atoms)
+    term = f"still_possible {run} {future} {text} never_ends false 0"
+    if isinstance(property_, Within) and property_.start:
+        enough = str(robustness((), property_.body) > 0).lower()
+        bounds = f"{property_.start} {property_.duration - property_.start}"
+        term = f"possible_interval {run} {future} {enough} {bounds} {in_coq(property_.body, atoms)} never_ends 0"
+    elif future == "None":
+        term = f"robustness {run} {text} never_ends false 0"
+    return f"Goal {term} = {margin_in_coq(found)}. Proof. vm_compute. reflexivity. Qed."
+
+
+def test_by_how_much_a_run_holds_and_what_is_still_possible_is_what_coq_says(certify: Path) -> None:
+    drawn = [equation for seed in range(share_of(900)) for equation in measured_in_coq(seed)]
+    assert sum("(Some Highest)" in each for each in drawn) > len(drawn) / 5
+    assert sum("possible_interval" in each for each in drawn) > len(drawn) / 10
+    folder = certify.parent.parent
+    (folder / "Measured.v").write_text(MEASURED + "\n".join(drawn), encoding="utf-8")
+    checked = subprocess.run(["coqc", "-q", "Measured.v"], cwd=folder, capture_output=True, text=True, check=False)
+    assert checked.returncode == 0, checked.stderr

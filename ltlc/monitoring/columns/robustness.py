@@ -78,7 +78,7 @@ class Robustness:
     """The robustness of properties on the rest of a run from each instant on.
 
     If the run continues, this is the least or the greatest that it can still become: `future` is the margin of whatever
-    is said of instants that have not come. Predicates are known where the run is.
+    is said of instants that have not come. Predicates are known where the run is. Coq: `proofs/Bands.v`.
     """
 
     def __init__(self, line: Timeline, predicates: Predicates, future: float | None = None) -> None:
