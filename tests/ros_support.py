@@ -2,23 +2,21 @@
 
 from __future__ import annotations
 
-import fcntl
 import json
 import os
 import signal
-import socket
 import subprocess
 import sys
-import tempfile
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, Self, TextIO
+from typing import Any, Self
 
 from stepping import from_text
 
 from ltlc.backends import emit
+from ltlc.falsification.domains import free_domains
 from ltlc.interfaces.building.guards import guard_entries, guard_programs
 
 PATIENCE = 300.0
@@ -57,16 +55,12 @@ def wait_until(happens: Callable[[], object], what: str, meanwhile: Callable[[],
             meanwhile()
 
 
-PORTS = 60
-"""How many ports of a domain are looked at: that of discovery, and two kinds for each of 25 participants."""
-
-
 @contextmanager
 def own_domain(folder: Path) -> Iterator[None]:
     """A ROS domain that nobody else on this machine uses, for this process and its children."""
     profiles = folder / "profiles.xml"
     profiles.write_text(PROFILES, encoding="utf-8")
-    with _claimed_domain() as domain:
+    with free_domains(1) as [domain]:
         changes = {
             "FASTRTPS_DEFAULT_PROFILES_FILE": str(profiles),
             "RMW_FASTRTPS_USE_QOS_FROM_XML": "1",
@@ -83,34 +77,6 @@ def own_domain(folder: Path) -> Iterator[None]:
                 os.environ.pop(name, None)
                 if value is not None:
                     os.environ[name] = value
-
-
-@contextmanager
-def _claimed_domain() -> Iterator[int]:
-    """A number whose lock file is ours and to whose ports nobody listens: a node may outlive a test that was killed."""
-    for domain in range(1, 100):
-        with open(Path(tempfile.gettempdir()) / f"ltlc-ros-domain-{domain}", "w") as lock:
-            if _is_locked(lock) and all(_is_free(7400 + 250 * domain + offset) for offset in range(PORTS)):
-                yield domain
-                return
-    raise RuntimeError("no ROS domain is free")
-
-
-def _is_locked(lock: TextIO) -> bool:
-    try:
-        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        return False
-    return True
-
-
-def _is_free(port: int) -> bool:
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
-        try:
-            probe.bind(("", port))
-        except OSError:
-            return False
-        return True
 
 
 def emitted_text(text: str, name: str = "watch.txt") -> str:

@@ -14,15 +14,13 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 from processes import children_of
 from stepping import from_text
 
 from ltlc.backends.python.load import load_plan
 from ltlc.cli import main
 from ltlc.interfaces.commands import progress
-from ltlc.monitoring.campaigns.campaign import TRIES, in_order, judge_all, judge_one, on_this_machine
+from ltlc.monitoring.campaigns.campaign import TRIES, judge_all, judge_one, on_this_machine
 from ltlc.monitoring.campaigns.outcomes import Outcome, of_report
 from ltlc.monitoring.campaigns.places import Location, find, is_one
 from ltlc.monitoring.campaigns.rows import outcome_of, rows_of
@@ -385,13 +383,6 @@ def test_workers_that_are_not_asked_for_more_are_ended(drives: Path) -> None:
     assert children_of(os.getpid()) - before
     outcomes.close()  # type: ignore[attr-defined]
     assert children_of(os.getpid()) == before
-
-
-@given(st.permutations(range(6)))
-def test_outcomes_are_told_in_the_order_of_the_recordings_whenever_they_arrive(order: Sequence[int]) -> None:
-    places = [Location(f"{number}") for number in range(6)]
-    arriving = [of_report(places[number], RunReport(str(number), None, ()), 0.0) for number in order]
-    assert [each.place.name for each in in_order({p.name: n for n, p in enumerate(places)}, arriving)] == list("012345")
 
 
 def outcomes() -> Iterator[Outcome]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import re
+import socket
 import sys
 import time
 from collections.abc import Callable
@@ -16,9 +17,9 @@ from bag_support import FORMS, odometry
 
 from ltlc.cli import main
 from ltlc.falsification.command import Command, command_of
+from ltlc.falsification.domains import PORTS, free_domains
 from ltlc.falsification.keeping import keep
 from ltlc.falsification.parameters import space_of
-from ltlc.falsification.simulation import SimulationError
 
 PROPS = """
 decl v /odom nav_msgs/Odometry.twist.twist.linear.x
@@ -218,17 +219,127 @@ def test_a_simulation_that_takes_too_long_is_ended(tmp_path: Path) -> None:
     space = space_of(["gain=0..1"], [], None)
     command = command_of("sleep 1000 {gain} {recording}", space, 10**7)
     command = Command(["sleep", "1000"], command.time_limit)
-    with pytest.raises(SimulationError, match="it took more than 10 ms"):
-        command(space.defaults(), tmp_path)
+    [left] = command.simulate([space.defaults()], tmp_path)
+    assert str(left.recording) == "it took more than 10 ms"
 
 
 def test_nothing_that_a_simulation_starts_is_left_running(tmp_path: Path) -> None:
     space = space_of(["gain=0..1"], [], None)
     script = f"sleep 1000 & echo $! > {tmp_path}/pid; touch {{recording}}.csv"
-    command_of(f"sh -c '{script}' {{gain}}", space, 60 * 10**9)(space.defaults(), tmp_path)
-    pid = int((tmp_path / "pid").read_text())
+    command = command_of(f"sh -c '{script}' {{gain}}", space, 60 * 10**9)
+    assert len(list(command.simulate([space.defaults()], tmp_path))) == 1
+    wait_for_end(int((tmp_path / "pid").read_text()))
+
+
+def wait_for_end(pid: int) -> None:
+    """Return when there is no such process, or nothing of it but its exit code."""
     while (state := Path(f"/proc/{pid}/stat")).exists() and state.read_text().rsplit(")", 1)[1].split()[0] != "Z":
         time.sleep(0.01)
+
+
+@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM"])
+def test_an_interrupted_search_says_how_far_it_came_and_leaves_nothing_running(
+    falsify: Falsify, capsys: Said, name: str
+) -> None:
+    Path("sim.py").write_text(SIMULATOR + INTERRUPT.format(when="given['gain'] != 1", name=name))
+    assert falsify("--jobs", "2", parameter="gain=0..1..2") == 3
+    told = capsys.readouterr().out
+    assert "Interrupted" in told
+    assert "No property is violated in 1 simulation (seed 0), which proves nothing." in told
+    assert "  slow: 1 at least, in simulation 1: gain=1" in told
+    for path in Path().glob("pid.*"):
+        wait_for_end(int(path.suffix[1:]))
+
+
+INTERRUPT = """
+import os, pathlib, signal, time
+if {when}:
+    pathlib.Path(f"pid.{{os.getpid()}}").touch()
+    try:
+        open("one", "x")
+    except FileExistsError:
+        pass
+    else:
+        os.kill(os.getppid(), signal.{name})
+    time.sleep(1000)
+"""
+
+
+def test_what_was_found_before_shrinking_was_interrupted_is_kept(falsify: Falsify, capsys: Said) -> None:
+    assert falsify() == 1
+    capsys.readouterr()
+    found = json.loads(Path("falsified/falsified.json").read_text())["found"]
+    for more, said in ((1, "It was not simulated again"), (2, "Shrunk in 1 more simulation:")):
+        Path("count").write_text("")
+        Path("one").unlink(missing_ok=True)
+        again = f"open('count', 'a').write('x'); again = len(open('count').read()) == {found['simulation'] + more}\n"
+        Path("sim.py").write_text(SIMULATOR + again + INTERRUPT.format(when="again", name="SIGINT"))
+        assert falsify() == 1
+        told = capsys.readouterr().out
+        assert said in told
+        assert "Interrupted" in told
+        assert json.loads(Path("falsified/parameters.json").read_text()) == found["assignment"]
+        assert json.loads(Path("falsified/falsified.json").read_text())["interrupted"]
+
+
+WAITS = """
+import os, pathlib, time
+if given["floor"] != "dry":
+    pathlib.Path(given["floor"]).touch()
+    while not pathlib.Path({"wet": "ice", "ice": "wet"}[given["floor"]]).exists():
+        time.sleep(0.01)
+if given["floor"] == "wet":
+    while not pathlib.Path("ice.done").exists():
+        time.sleep(0.01)
+pathlib.Path(given["floor"] + ".done").write_text(f"{os.environ['ROS_DOMAIN_ID']} {sys.argv[3]}")
+"""
+
+
+def test_jobs_run_side_by_side_in_ros_domains_of_their_own_and_are_reported_in_order(
+    falsify: Falsify, capsys: Said, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("ROS_DOMAIN_ID", "0")
+    Path("sim.py").write_text(SIMULATOR.replace("json.load", "{'gain': 1} | json.load") + WAITS)
+    code = falsify("--jobs", "2", simulate=f"{SIMULATE} {{job}}", parameter="floor=dry,wet,ice", simulations=3)
+    told = capsys.readouterr()
+    assert code == 0, told
+    assert re.findall(r"^\d+: floor=(\w+)", told.err, re.MULTILINE) == ["dry", "wet", "ice"]
+    domains, jobs = zip(*(Path(f"{floor}.done").read_text().split() for floor in ("wet", "ice")), strict=True)
+    assert len({*domains, "0"}) == 3
+    assert jobs == ("0", "1")
+
+
+def test_what_is_found_does_not_depend_on_jobs(falsify: Falsify, capsys: Said) -> None:
+    found = []
+    for jobs in ("1", "2", "5"):
+        assert falsify("--jobs", jobs, "--parameter", "noise=0..1", parameter="gain=0..1..2.2", simulations=40) == 1
+        told = capsys.readouterr()
+        document = json.loads(Path("falsified/falsified.json").read_text())
+        del document["provenance"]
+        found.append((told.out, told.err, document, Path("falsified/recording.csv").read_text()))
+    assert found[0] == found[1] == found[2]
+    assert found[0][2]["simulations"] > 9, "the search is to be guided"
+
+
+TWO = f"{PROPS}fast: always v < 1\n"
+
+
+def test_only_the_properties_that_are_chosen_are_searched(falsify: Falsify, capsys: Said) -> None:
+    Path("props.txt").write_text(TWO)
+    assert falsify(parameter="gain=0..0.5..2") == 1
+    assert "fast is violated" in capsys.readouterr().out
+    assert falsify("--property", "slow", parameter="gain=0..0.5..2") == 0
+    assert "  fast: not searched" in capsys.readouterr().out
+    assert falsify("--property", "slow", "--format", "json", parameter="gain=0..0.5..2") == 0
+    document = json.loads(capsys.readouterr().out)
+    assert [each["label"] for each in document["properties"]] == ["slow"]
+    assert document["not_searched"] == ["fast"]
+    assert falsify("--property", "fast", "--property", "slow", parameter="gain=0..0.5..2") == 1
+
+
+def test_a_property_that_is_not_there_is_refused(falsify: Falsify, capsys: Said) -> None:
+    assert falsify("--property", "slw") == 2
+    assert "there is no property `slw`: did you mean `slow`?" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(
@@ -243,3 +354,29 @@ def test_an_error_in_the_specification_is_reported_before_anything_is_simulated(
     assert falsify(simulate="touch {recording}.csv simulated {gain}") == 2
     assert "error[LTL101]" in capsys.readouterr().err
     assert not Path("simulated").exists()
+
+
+def test_more_jobs_than_there_are_free_domains_are_refused(
+    falsify: Falsify, capsys: Said, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("ltlc.falsification.domains.DOMAINS", range(0))
+    assert falsify("--jobs", "2") == 2
+    assert "--jobs 2: only 0 ROS domains are free on this machine" in capsys.readouterr().err
+
+
+def test_a_domain_is_given_to_one_at_a_time() -> None:
+    with free_domains(1) as first, free_domains(2) as others:
+        assert first
+        assert not set(first) & set(others)
+
+
+def test_a_domain_in_which_something_listens_is_not_given(monkeypatch: pytest.MonkeyPatch) -> None:
+    while True:
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as node:
+            node.bind(("", 0))
+            domain, offset = divmod(node.getsockname()[1] - 7400, 250)
+            if offset < PORTS:
+                monkeypatch.setattr("ltlc.falsification.domains.DOMAINS", [domain])
+                with free_domains(1) as found:
+                    assert found == []
+                return

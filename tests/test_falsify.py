@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+import os
+import signal
+import sys
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import groupby, islice
 from random import Random
+from threading import Lock
 from typing import Any
 
 import pytest
@@ -15,7 +19,7 @@ import ltlc
 from ltlc.falsification import search
 from ltlc.falsification.assignment import Assignment
 from ltlc.falsification.parameters import Choices, Integers, Reals, Space, space_of
-from ltlc.falsification.search import Proposal, proposals, ranked
+from ltlc.falsification.search import Losses, Point, batches, ranked
 from ltlc.falsification.shrinking import shrink, simpler, size
 from ltlc.semantics.verdicts import Verdict
 
@@ -175,6 +179,22 @@ def re_lines(text: str) -> dict[str, str]:
     return {label: told.rpartition("; ")[2] for label, _, told in lines}
 
 
+def test_what_was_not_looked_at_is_reported() -> None:
+    text = f"{DECLARATIONS}slow: never v > 2\nquiet: after w > 5, never v > 1"
+
+    def simulate(given: Mapping[str, Any]) -> Rows:
+        return constant(v=math.nan if given["n"] == 2 else 0, w=given["n"])
+
+    some = ltlc.falsify(text, simulate, ["n:int=1..1..6"], simulations=6)
+    remarks = re_lines(str(some))
+    assert remarks["slow"] == "steps left out in 1 simulation, as of 2: a value was NaN"
+    assert "not triggered in 4; steps left out" in str(some)
+    document = some.document()["properties"]
+    assert [(each["not_triggered"], each["left_out"]) for each in document] == [(0, [2]), (4, [2])]
+    none = ltlc.falsify(text, simulate, ["n:int=3..3..5"], simulations=3)
+    assert re_lines(str(none))["quiet"] == "never triggered"
+
+
 def test_what_a_run_leaves_open_at_its_end_does_not_guide() -> None:
     text = f"{DECLARATIONS}answers: always (v > 1 implies eventually w > 1 within 1 s)"
     rows: Rows = [(0.0, {"v": 2, "w": 0}), (1.0, {"v": 0, "w": 1.25}), (2.0, {"v": 3, "w": 0})]
@@ -192,6 +212,78 @@ def test_a_simulation_that_does_not_repeat_itself_is_not_shrunk() -> None:
     assert found.document()["smallest"] is None
     assert found.run is not None
     assert found.run.violations
+
+
+def test_what_is_found_does_not_depend_on_jobs() -> None:
+    def simulate(given: Mapping[str, Any]) -> Rows:
+        return constant(v=2.05 - math.dist((given["a"], given["b"]), (0.83, 0.21)) ** 2)
+
+    found = [ltlc.falsify(SLOW, simulate, UNIT[:2], jobs=jobs) for jobs in (1, 3)]
+    assert found[0].document() == found[1].document()
+    assert str(found[0]) == str(found[1])
+    assert found[0].run is not None
+    assert found[1].run is not None
+    assert found[0].run.document() == found[1].run.document()
+
+
+def test_a_function_that_several_jobs_call_need_not_be_picklable_but_what_it_gives() -> None:
+    lock: Any = Lock()
+
+    def simulate(given: Mapping[str, Any]) -> Iterator[tuple[float, dict[str, Any]]]:
+        with lock:
+            yield from constant(v=given["gain"] * 3)
+
+    assert ltlc.falsify(SLOW, simulate, ["gain=0..0.1..1"], jobs=2).violated == "slow"
+    with pytest.raises(ltlc.UnusableInput, match="what it gave cannot be pickled, as several jobs need: TypeError: "):
+        ltlc.falsify(SLOW, lambda _: [lock], ["gain=0..1"], jobs=2)
+
+
+@pytest.mark.parametrize(
+    ("crash", "reason"),
+    [
+        (lambda: os.kill(os.getpid(), signal.SIGSEGV), "its process crashed, or ran out of memory"),
+        (lambda: sys.exit("no licence"), "SystemExit: no licence"),
+        (lambda: 1 / 0, "ZeroDivisionError: division by zero"),
+    ],
+)
+def test_a_function_that_ends_its_process_is_a_simulation_that_failed(crash: Callable[[], object], reason: str) -> None:
+    def simulate(given: Mapping[str, Any]) -> Rows:
+        if given["floor"] == "ice":
+            crash()
+        return constant(v=0)
+
+    found = ltlc.falsify(SLOW, simulate, ["floor=dry,wet,ice,sand"], simulations=9, jobs=2)
+    [failed] = found.document()["failed"]
+    assert failed["reason"].startswith(reason)
+    assert (failed["assignment"], found.document()["simulations"]) == ({"floor": "ice"}, 4)
+
+
+def test_the_error_of_the_first_simulation_has_its_traceback() -> None:
+    with pytest.raises(ltlc.UnusableInput) as raised:
+        ltlc.falsify(SLOW, lambda given: given["gian"], ["gain=0..1"])
+    assert isinstance(raised.value.__cause__, KeyError)
+
+
+def test_an_interrupted_search_is_interrupted_in_python() -> None:
+    def simulate(given: Mapping[str, Any]) -> Rows:
+        if given["gain"] != 0.5:
+            raise KeyboardInterrupt
+        return constant(v=0)
+
+    with pytest.raises(KeyboardInterrupt):
+        ltlc.falsify(SLOW, simulate, ["gain=0..1"])
+
+
+@pytest.mark.parametrize(
+    ("options", "reason"),
+    [
+        ({"jobs": 0}, "0 jobs: a number from 1 on"),
+        ({"properties": ["slw"]}, "there is no property `slw`: did you mean"),
+    ],
+)
+def test_options_that_cannot_be_are_refused(options: dict[str, Any], reason: str) -> None:
+    with pytest.raises(ltlc.UnusableInput, match=reason):
+        ltlc.falsify(SLOW, lambda _: constant(v=0), ["gain=0..1"], **options)
 
 
 def test_the_property_that_was_found_is_shrunk_and_no_other() -> None:
@@ -265,7 +357,17 @@ def test_what_is_shrunk_still_fails_and_is_no_larger_and_no_step_makes_it_smalle
         held = all(_like(assignment.values[name], begin.values[name]) for name in matters)
         return Failing(assignment) if held and near is not None else None
 
-    shrunk = shrink(Failing(begin), SPACE, fails, set()).assignment
+    tried = set()
+
+    def failing(assignments: Iterator[Assignment]) -> Failing | None:
+        for each in assignments:
+            assert each.key not in tried
+            tried.add(each.key)
+            if found := fails(each):
+                return found
+        return None
+
+    shrunk = shrink(Failing(begin), SPACE, failing, tried).assignment
     assert fails(shrunk)
     assert size(shrunk, SPACE) <= size(begin, SPACE)
     smaller = [s for s in simpler(shrunk, SPACE, 4.2) if size(s, SPACE) < size(shrunk, SPACE)]
@@ -299,15 +401,28 @@ def test_every_simpler_assignment_is_one_of_the_space() -> None:
             assert times[-1] < each.seconds
 
 
-def taken(losses: Sequence[Mapping[str, float]], count: int) -> list[Proposal]:
-    """The proposals if these losses are found in turn, the last one again and again."""
-    made = proposals([(0.5, 0.5)], 60, 0)
-    found = [next(made)]
-    return found + [made.send(losses[min(n, len(losses) - 1)]) for n in range(count - 1)]
+def searched(
+    begin: Sequence[Sequence[float]], count: int, seed: int, loss: Callable[[Point, int], Losses]
+) -> Iterator[tuple[Point, str | None]]:
+    """The points of a search one by one, and what is pursued with each; `loss` says what is found at which of them."""
+    search, number = batches([tuple(each) for each in begin], count, seed), 0
+    batch = next(search)
+    while True:
+        losses = []
+        for point in batch.points:
+            yield point, batch.pursued
+            losses.append(loss(point, number))
+            number += 1
+        batch = search.send(losses)
+
+
+def taken(losses: Sequence[Losses], count: int) -> list[tuple[Point, str | None]]:
+    """So many points if these losses are found in turn, the last one again and again."""
+    return list(islice(searched([(0.5, 0.5)], 60, 0, lambda _, number: losses[min(number, len(losses) - 1)]), count))
 
 
 def test_a_search_begins_where_it_is_told_and_spreads_then() -> None:
-    found = [each.point for each in taken([{"p": 1.0}], 9)]
+    found = [point for point, _ in taken([{"p": 1.0}], 9)]
     assert found[0] == (0.5, 0.5)
     for axis in zip(*found[1:], strict=True):
         assert sorted(int(number * 8) for number in axis) == list(range(8))
@@ -318,40 +433,36 @@ def test_the_property_that_is_closest_to_failing_beside_its_usual_margin_is_purs
         {"far": 1000.0, "near": 0.01, "none": math.inf}
     ]
     found = taken(near, 40)
-    assert [name for name, _ in groupby(each.pursued for each in found)][:3] == [None, "near", "far"]
+    assert [name for name, _ in groupby(pursued for _, pursued in found)][:3] == [None, "near", "far"]
 
 
 def test_properties_take_turns() -> None:
     found = taken([{"p": 1.0, "q": 0.5}], 59)
-    pursued = [each.pursued for each in found if each.pursued]
+    pursued = [name for _, name in found if name]
     turns = [(name, len(list(each))) for name, each in groupby(pursued)]
     assert [name for name, _ in turns[:6]] == ["p", "q"] * 3
     assert len({length for _, length in turns[:6]}) == 1
 
 
 def test_where_nothing_is_measured_points_are_drawn_from_everywhere() -> None:
-    found = [each for each in taken([{"p": math.inf}], 60) if each.pursued is None]
+    found = [point for point, pursued in taken([{"p": math.inf}], 60) if pursued is None]
     assert len(found) == 60
-    assert len({each.point for each in found}) == 60
+    assert len(set(found)) == 60
 
 
 def test_a_descent_comes_closer() -> None:
-    made = proposals([(0.1, 0.9, 0.4)], 120, 1)
-    proposal, distances = next(made), []
-    for _ in range(120):
-        distances.append(math.dist(proposal.point, (0.7, 0.2, 0.6)))
-        proposal = made.send({"p": distances[-1]})
+    wanted = (0.7, 0.2, 0.6)
+    found = islice(searched([(0.1, 0.9, 0.4)], 120, 1, lambda point, _: {"p": math.dist(point, wanted)}), 120)
+    distances = [math.dist(point, wanted) for point, _ in found]
     assert min(distances) < 0.1 < min(distances[:9])
 
 
 @pytest.mark.parametrize("dimension", [1, 2, 9])
 def test_all_points_are_in_the_cube(dimension: int) -> None:
-    made = proposals([(1.0,) * dimension], 80, 2)
-    proposal = next(made)
-    for _ in range(80):
-        assert len(proposal.point) == dimension
-        assert all(0 <= coordinate <= 1 for coordinate in proposal.point)
-        proposal = made.send({"p": -sum(proposal.point)})
+    found = searched([(1.0,) * dimension], 80, 2, lambda point, _: {"p": -sum(point)})
+    for point, _ in islice(found, 80):
+        assert len(point) == dimension
+        assert all(0 <= coordinate <= 1 for coordinate in point)
 
 
 def test_a_ranking_has_only_what_is_known() -> None:

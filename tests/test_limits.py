@@ -8,12 +8,14 @@ import signal
 import subprocess
 import sys
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any, NoReturn
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from ltlc.automata import (
     Budget,
@@ -26,7 +28,7 @@ from ltlc.automata import (
     translate_all,
     translate_by_progression,
 )
-from ltlc.base.limits import UNBOUNDED, children, run_all, run_each
+from ltlc.base.limits import UNBOUNDED, children, in_order, run_all, run_each
 from ltlc.semantics.alphabet import Alphabet, Group
 from ltlc.semantics.ltl import And, Atom, Formula, Next, Not, Or, Until, atoms, eventually, globally, implies
 from ltlc.semantics.timed_atoms import BEGINNING, late
@@ -351,3 +353,8 @@ def test_a_job_that_kills_its_process_is_told_and_the_others_are_done() -> None:
     assert isinstance(killed, Exceeded)
     assert killed.reason == "its process ended with signal 9"
     assert outcomes == {0: 0, 2: 2, 3: 3}
+
+
+@given(st.permutations(range(6)))
+def test_results_are_given_in_the_order_of_their_numbers_whenever_they_arrive(order: Sequence[int]) -> None:
+    assert list(in_order((number, str(number)) for number in order)) == list("012345")

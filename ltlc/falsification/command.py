@@ -3,72 +3,92 @@
 from __future__ import annotations
 
 import json
-import os
 import re
 import shlex
-import signal
-import subprocess
-from collections.abc import Sequence
-from contextlib import suppress
+import tempfile
+import time
+from collections import deque
+from collections.abc import Generator, Iterable, Mapping, Sequence
 from pathlib import Path
+from typing import NamedTuple
 
 from ltlc.base.nearest import did_you_mean
 from ltlc.dataclass import dataclass
 from ltlc.falsification.assignment import Assignment, scalar_text
 from ltlc.falsification.parameters import Space
+from ltlc.falsification.process import Process, said, uninterrupted
 from ltlc.falsification.simulation import SimulationError
 from ltlc.inputs.recordings import is_recording
-from ltlc.runtime.reports import printable
-from ltlc.semantics.durations import Nanoseconds, duration_text
+from ltlc.semantics.durations import Nanoseconds
 
 PARAMETERS, RECORDING, OUTPUT = "parameters.json", "recording", "output.txt"
 """What is in the folder of a simulation: what it gets, what it leaves, the latter with any ending, and what it says."""
 
-MOST_SAID = 200
-"""So many characters of what a simulation said last are shown."""
+EVERY_SECONDS = 0.005
+"""How often those that run are looked at."""
+
+
+class Left(NamedTuple):
+    """What a simulation has left in its `folder`: a recording, or none for a reason."""
+
+    assignment: Assignment
+    folder: Path
+    recording: Path | SimulationError
+
+
+class _Begun(NamedTuple):
+    assignment: Assignment
+    folder: Path
+    job: int
+    process: Process
 
 
 @dataclass(frozen=True)
 class Command:
-    """A command with its arguments, which have placeholders; each run of it may take so long."""
+    """A command with its arguments, which have placeholders; each run of it may take so long.
+
+    As many run at a time as there are `environments`: each has the variables of one of them, beside ours.
+    """
 
     arguments: Sequence[str]
     time_limit: Nanoseconds
+    environments: Sequence[Mapping[str, str]] = ({},)
 
-    def __call__(self, assignment: Assignment, folder: Path) -> Path:
-        """The recording that it leaves in `folder`, which is empty before. Raises SimulationError."""
+    def simulate(self, assignments: Iterable[Assignment], folder: Path) -> Generator[Left, None, None]:
+        """What each leaves in a new folder in `folder`, in order. Closing it ends those under way."""
+        waiting, jobs = iter(assignments), set(range(len(self.environments)))
+        begun = deque[_Begun]()
+        try:
+            while True:
+                free = jobs - {each.job for each in begun if each.process.is_running()}
+                while free and (assignment := next(waiting, None)) is not None:
+                    with uninterrupted():
+                        begun.append(self._begin(assignment, Path(tempfile.mkdtemp(dir=folder)), min(free)))
+                    free.remove(begun[-1].job)
+                if not begun:
+                    return
+                if begun[0].process.is_running():
+                    time.sleep(EVERY_SECONDS)
+                else:
+                    first = begun.popleft()
+                    yield Left(first.assignment, first.folder, _recording(first))
+        finally:
+            for each in begun:
+                each.process.end()
+
+    def _begin(self, assignment: Assignment, folder: Path, job: int) -> _Begun:
         (folder / PARAMETERS).write_text(json.dumps(assignment.document(), indent=2) + "\n", encoding="utf-8")
         given = {
             **{name: value for name, value in assignment.values.items() if not isinstance(value, tuple)},
             "parameters": str(folder / PARAMETERS),
             "recording": str(folder / RECORDING),
+            "job": job,
             **({} if assignment.seconds is None else {"seconds": assignment.seconds}),
         }
         texts = {name: scalar_text(value) for name, value in given.items()}
-        self._run([_filled(argument, texts) for argument in self.arguments], folder / OUTPUT)
-        return _recording(folder)
-
-    def _run(self, command: Sequence[str], output: Path) -> None:
-        """Run `command`, and end what it started if it takes too long, or if we are interrupted."""
-        with output.open("wb") as file:
-            try:
-                process = subprocess.Popen(
-                    command, stdin=subprocess.DEVNULL, stdout=file, stderr=subprocess.STDOUT, start_new_session=True
-                )
-            except (OSError, ValueError) as error:
-                reason = error.strerror if isinstance(error, OSError) else str(error)
-                raise SimulationError(f"`{command[0]}` cannot be started: {reason}") from None
-        try:
-            code = process.wait(self.time_limit / 1e9)
-        except subprocess.TimeoutExpired:
-            raise SimulationError(f"it took more than {duration_text(self.time_limit)}{_said(output)}") from None
-        finally:
-            with suppress(ProcessLookupError):
-                os.killpg(process.pid, signal.SIGKILL)  # and what it left running
-            process.wait()
-        if code:
-            how = f"ended with exit code {code}" if code > 0 else f"was ended by {signal.Signals(-code).name}"
-            raise SimulationError(f"it {how}{_said(output)}")
+        command = [_filled(argument, texts) for argument in self.arguments]
+        process = Process(command, self.environments[job], folder / OUTPUT, self.time_limit)
+        return _Begun(assignment, folder, job, process)
 
 
 def command_of(text: str, space: Space, time_limit: Nanoseconds) -> Command:
@@ -81,7 +101,7 @@ def command_of(text: str, space: Space, time_limit: Nanoseconds) -> Command:
         raise ValueError("the command is empty")
     used = {match[1] for argument in arguments for match in _PLACEHOLDER.finditer(argument) if match[1] is not None}
     inputs = {each.name for each in space.parameters if each.points}
-    known = {"parameters", "recording"} | ({each.name for each in space.parameters} - inputs)
+    known = {"parameters", "recording", "job"} | ({each.name for each in space.parameters} - inputs)
     known |= set() if space.seconds is None else {"seconds"}
     for name in sorted(used - known):
         if name in inputs:
@@ -104,23 +124,16 @@ def _filled(argument: str, texts: dict[str, str]) -> str:
     return _PLACEHOLDER.sub(lambda match: match[0][0] if match[1] is None else texts[match[1]], argument)
 
 
-def _recording(folder: Path) -> Path:
-    """The recording in `folder`. Raises SimulationError."""
-    left = [each for each in sorted(folder.iterdir()) if each.name not in (PARAMETERS, OUTPUT)]
+def _recording(begun: _Begun) -> Path | SimulationError:
+    """The recording in the folder of a simulation, or why there is none."""
+    if begun.process.failure:
+        return SimulationError(begun.process.failure)
+    left = [each for each in sorted(begun.folder.iterdir()) if each.name not in (PARAMETERS, OUTPUT)]
     found = [each for each in left if each.name == RECORDING or each.name.startswith(f"{RECORDING}.")]
     if not found:
         beside = f", but {left[0].name}" if left else ""
-        raise SimulationError(f"it wrote no {{recording}}{beside}{_said(folder / OUTPUT)}")
+        return SimulationError(f"it wrote no {{recording}}{beside}{said(begun.folder / OUTPUT)}")
     found = [each for each in found if is_recording(each)] or found
     if len(found) > 1:
-        raise SimulationError(f"it wrote several recordings: {', '.join(each.name for each in found)}")
+        return SimulationError(f"it wrote several recordings: {', '.join(each.name for each in found)}")
     return found[0]
-
-
-def _said(output: Path) -> str:
-    """The last line that a simulation has said, or nothing."""
-    with output.open("rb") as file:
-        file.seek(max(0, file.seek(0, os.SEEK_END) - MOST_SAID * 4))
-        lines = file.read().decode(errors="replace").split("\n")
-    last = printable(next((line.strip() for line in reversed(lines) if line.strip()), ""))
-    return f": {last[:MOST_SAID]}" if last else ""

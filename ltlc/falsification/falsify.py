@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import closing
+from itertools import islice
 
 from ltlc.dataclass import dataclass
 from ltlc.falsification.assignment import Assignment
 from ltlc.falsification.parameters import Space
-from ltlc.falsification.search import Losses, proposals
+from ltlc.falsification.search import Losses, batches
 from ltlc.falsification.shrinking import shrink
-from ltlc.falsification.simulation import Simulate, Simulated, SimulationError, is_violated
+from ltlc.falsification.simulation import Outcome, Simulate, Simulated, SimulationError, is_violated
 from ltlc.semantics.verdicts import Verdict
 
 MOST_KNOWN = 1000
-"""So many proposals in a row that have all been simulated before end a search: there is hardly anything else."""
+"""So many points in a row that have all been simulated before end a search: there is hardly anything else."""
 
 
 @dataclass(frozen=True)
@@ -23,8 +24,9 @@ class Falsification:
     """The result of a search in `space`: its simulations, of which the last violates a property if one was `found`.
 
     `smallest` is what that was shrunk to, in so many simulations more (`shrinking`); None if the same assignment did
-    not violate it again. The search is `exhaustive` if it looked at all assignments. `unmeasured` says of properties
-    that could not guide it why not.
+    not violate it again, or was not simulated again. The search is `exhaustive` if it looked at all assignments.
+    `unmeasured` says of properties that could not guide it why not. Search or shrinking `is_interrupted` if Ctrl-C
+    ended it.
     """
 
     space: Space
@@ -34,6 +36,7 @@ class Falsification:
     exhaustive: bool = False
     smallest: Simulated | None = None
     shrinking: int = 0
+    is_interrupted: bool = False
 
     @property
     def found(self) -> Simulated | None:
@@ -48,7 +51,7 @@ class Falsification:
 
     @property
     def exit_code(self) -> int:
-        """1 a property is violated; 2 a simulation failed; 3 something is owed, or never started; 0 otherwise."""
+        """1 a property is violated; 2 a simulation failed; 3 something is owed or undecided; 0 otherwise."""
         if self.found is not None:
             return 1
         if self.failed:
@@ -56,44 +59,11 @@ class Falsification:
         verdicts = [each.verdicts for each in self.simulations]
         is_owed = any(Verdict.PRESUMABLY_VIOLATED in each.values() for each in verdicts)
         is_idle = any(all(each[label] is Verdict.NOT_STARTED for each in verdicts) for label in verdicts[0])
-        return 3 if is_owed or is_idle else 0
+        return 3 if is_owed or is_idle or self.is_interrupted else 0
 
 
 Watch = Callable[[Simulated, str], None]
 """Called after each simulation, with what it was for: the label of the property that was pursued, or nothing."""
-
-
-class _Bench:
-    """Simulates, and counts; remembers why properties could not be measured."""
-
-    def __init__(self, simulate: Simulate, watch: Watch | None) -> None:
-        self._simulate = simulate
-        self._watch = watch
-        self.count = 0
-        self.unmeasured: dict[str, str] = {}
-
-    def __call__(self, assignment: Assignment, what_for: str = "") -> Simulated:
-        self.count += 1
-        found = self._outcome(assignment)
-        if self._watch is not None:
-            self._watch(found, what_for)
-        return found
-
-    def _outcome(self, assignment: Assignment) -> Simulated:
-        try:
-            report = self._simulate(assignment)
-        except SimulationError as error:
-            return Simulated(self.count, assignment, str(error))
-        assert report.session is not None
-        verdicts = {track.property.label: track.verdict for track in report.session.tracks}
-        self.unmeasured |= {label: curve.reason for label, curve in report.robustness.items() if curve.reason}
-        margins = {
-            label: report.bands[label].high if label in report.bands else math.inf
-            for label, curve in report.robustness.items()
-            if not curve.reason
-        }
-        kept = report if is_violated(report) else None
-        return Simulated(self.count, assignment, "", verdicts, margins, kept)
 
 
 def falsify(
@@ -106,71 +76,143 @@ def falsify(
 ) -> Falsification:
     """Search `space` in at most `count` simulations, and shrink what is found in at most as many more.
 
-    The first is of the defaults, then come `examples`. Everything follows from `seed`, if it does in the simulation.
-    Raises SimulationError if the first one fails.
+    The first is of the defaults, then come `examples`. Everything follows from `seed`, if it does in the simulation,
+    and from nothing else: how many simulations run at a time changes nothing. Ctrl-C ends it, and what was found stays.
+
+    Raises SimulationError if the first one fails, and KeyboardInterrupt if that was not finished.
     """
-    bench = _Bench(simulate, watch)
-    first = bench(space.defaults())
-    if first.failure:
-        raise SimulationError(first.failure)
-    simulations, exhaustive = [first], space.size <= count
-    if first.violated is None:
-        others = space.all() if exhaustive else None
-        rest = _all(bench, first, others) if others else _searched(bench, space, first, count, seed, examples)
-        simulations += rest
-    found = Falsification(space, seed, tuple(simulations), bench.unmeasured, exhaustive and len(simulations) > 1)
-    return found if found.found is None else _shrunk(found, bench, count)
+    search = _Search(simulate, space, count, watch)
+    is_interrupted = False
+    try:
+        search.run(seed, examples)
+    except KeyboardInterrupt:
+        if not search.simulations:
+            raise
+        is_interrupted = True
+    last = len(search.simulations) if search.found is None else search.found.number
+    return Falsification(
+        space,
+        seed,
+        tuple(search.simulations[:last]),
+        search.unmeasured,
+        search.is_exhaustive,
+        search.smallest,
+        len(search.simulations) - last,
+        is_interrupted,
+    )
 
 
-def _all(bench: _Bench, first: Simulated, assignments: Iterator[Assignment]) -> Iterator[Simulated]:
-    """Simulate all of `assignments` but the first, until a property is violated."""
-    for assignment in assignments:
-        if assignment.key != first.assignment.key:
-            found = bench(assignment)
-            yield found
-            if found.violated is not None:
-                return
+class _Search:
+    """Looks for a violation, and shrinks it; what is known is here at any time, whatever comes in between."""
+
+    def __init__(self, simulate: Simulate, space: Space, count: int, watch: Watch | None) -> None:
+        self._simulate = simulate
+        self._space = space
+        self._count = count
+        self._watch = watch
+        self.is_exhaustive = False
+        self.simulations: list[Simulated] = []
+        self.unmeasured: dict[str, str] = {}
+        self.found: Simulated | None = None
+        self.smallest: Simulated | None = None
+
+    def run(self, seed: int, examples: Sequence[Assignment]) -> None:
+        """Search and shrink. Raises SimulationError if the first simulation fails."""
+        self.found = self._first([self._space.defaults()], _is_violation)
+        if self.found is None:
+            self.found = self._of_all() if self._space.size <= self._count else self._guided(seed, examples)
+        if self.found is not None:
+            self._shrink(self.found)
+
+    def _first(
+        self, assignments: Iterable[Assignment], ends: Callable[[Simulated], bool], what_for: str = ""
+    ) -> Simulated | None:
+        """Simulate `assignments` in order, until one ends it, which is given."""
+        with closing(self._simulate(assignments)) as simulated:
+            for assignment, outcome in simulated:
+                found = self._judged(assignment, outcome)
+                self.simulations.append(found)
+                if self._watch is not None:
+                    self._watch(found, what_for)
+                if ends(found):
+                    return found
+        return None
+
+    def _judged(self, assignment: Assignment, outcome: Outcome) -> Simulated:
+        number = len(self.simulations) + 1
+        if isinstance(outcome, SimulationError):
+            if number == 1:
+                raise outcome
+            return Simulated(number, assignment, str(outcome))
+        assert outcome.session is not None
+        tracks = {track.property.label: track for track in outcome.session.tracks}
+        verdicts = {label: track.verdict for label, track in tracks.items()}
+        self.unmeasured |= {label: curve.reason for label, curve in outcome.robustness.items() if curve.reason}
+        margins = {
+            label: outcome.bands[label].high if label in outcome.bands else math.inf
+            for label, curve in outcome.robustness.items()
+            if not curve.reason
+        }
+        untriggered = [label for label, track in tracks.items() if track.never_triggered]
+        left_out = {label: next(iter(track.invalid_because)) for label, track in tracks.items() if track.invalid}
+        kept = outcome if is_violated(outcome) else None
+        return Simulated(number, assignment, "", verdicts, margins, untriggered, left_out, kept)
+
+    def _of_all(self) -> Simulated | None:
+        """Simulate all assignments but the first, until a property is violated."""
+        first = self.simulations[0].assignment.key
+        found = self._first((each for each in self._space.all() if each.key != first), _is_violation)
+        self.is_exhaustive = found is None
+        return found
+
+    def _guided(self, seed: int, examples: Sequence[Assignment]) -> Simulated | None:
+        """Simulate what the search proposes, until a property is violated, or there have been as many as there may."""
+        first = self.simulations[0]
+        begin = [self._space.point(each) for each in (first.assignment, *examples)]
+        search = batches(begin, self._count, seed)
+        known = {first.assignment.key: _losses(first)}
+        labels, batch, repeated = known[first.assignment.key], next(search), 0
+        while True:
+            assignments = [self._space.assignment(point) for point in batch.points]
+            others = {each.key: each for each in assignments if each.key not in known}
+            repeated = 0 if others else repeated + len(assignments)
+            before = len(self.simulations)
+            allowed = islice(others.values(), self._count - before)
+            if (found := self._first(allowed, _is_violation, batch.pursued or "")) is not None:
+                return found
+            if len(self.simulations) >= self._count or repeated >= MOST_KNOWN:
+                return None
+            for each in self.simulations[before:]:
+                known[each.assignment.key] = dict.fromkeys(labels, math.inf) | dict(_losses(each))
+            batch = search.send([known[each.key] for each in assignments])
+
+    def _shrink(self, found: Simulated) -> None:
+        """Simulate what is simpler, up to so many times, if the same violates the property once more."""
+        assert found.violated is not None
+        label, most = found.violated.property.label, found.number + self._count
+        tried = {each.assignment.key for each in self.simulations}
+
+        def failing(assignments: Iterator[Assignment]) -> Simulated | None:
+            before = len(self.simulations)
+            smaller = self._first(
+                islice(assignments, most - before),
+                lambda each: each.verdicts.get(label) is Verdict.VIOLATED,
+                f"shrinking {label}",
+            )
+            tried.update(each.assignment.key for each in self.simulations[before:])
+            if smaller is not None:
+                self.smallest = smaller
+            return smaller
+
+        again = failing(iter([found.assignment]))
+        if again is not None:
+            shrink(again, self._space, failing, tried)
 
 
-def _searched(
-    bench: _Bench, space: Space, first: Simulated, count: int, seed: int, examples: Sequence[Assignment]
-) -> Iterator[Simulated]:
-    """Simulate what the search proposes, up to `count` with the `first`, until a property is violated."""
-    begin = [space.point(each) for each in (first.assignment, *examples)]
-    search = proposals(begin, count, seed)
-    known = {first.assignment.key: _losses(first)}
-    labels, proposal, repeated = known[first.assignment.key], next(search), 0
-    while bench.count < count and repeated < MOST_KNOWN:
-        assignment = space.assignment(proposal.point)
-        repeated = repeated + 1 if assignment.key in known else 0
-        if not repeated:
-            found = bench(assignment, proposal.pursued or "")
-            yield found
-            if found.violated is not None:
-                return
-            known[assignment.key] = dict.fromkeys(labels, math.inf) | dict(_losses(found))
-        proposal = search.send(known[assignment.key])
+def _is_violation(simulated: Simulated) -> bool:
+    return simulated.violated is not None
 
 
 def _losses(simulated: Simulated) -> Losses:
     """How close each property came to failing: its margin; at least 0, as it was not violated."""
     return {label: max(margin, 0.0) for label, margin in simulated.margins.items()}
-
-
-def _shrunk(found: Falsification, bench: _Bench, most: int) -> Falsification:
-    """The same with what it was shrunk to, in at most so many simulations."""
-    begin = bench.count
-    assert found.found is not None
-    assert found.found.violated is not None
-    label = found.found.violated.property.label
-
-    def fails(assignment: Assignment) -> Simulated | None:
-        if bench.count - begin >= most:
-            return None
-        simulated = bench(assignment, f"shrinking {label}")
-        return simulated if simulated.verdicts.get(label) is Verdict.VIOLATED else None
-
-    again = fails(found.found.assignment)
-    tried = {each.assignment.key for each in found.simulations}
-    smallest = None if again is None else shrink(again, found.space, fails, tried)
-    return replace(found, smallest=smallest, shrinking=bench.count - begin)

@@ -11,7 +11,7 @@ from itertools import product
 from ltlc.dataclass import dataclass
 from ltlc.falsification.assignment import Assignment, Course, Scalar, at, merged
 
-RESERVED = ("parameters", "recording", "seconds")
+RESERVED = ("parameters", "recording", "seconds", "job")
 """What a command gets by these names is something else."""
 
 MOST_POINTS = 1000

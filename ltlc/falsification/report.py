@@ -15,9 +15,9 @@ from ltlc.runtime.reports import counted, figure
 from ltlc.semantics.verdicts import Verdict
 
 
-def text(made: Falsification) -> str:
-    """What `ltlc falsify` prints."""
-    return "".join(f"{line}\n" for line in _lines(made))
+def text(made: Falsification, left_out: Sequence[str] = ()) -> str:
+    """What `ltlc falsify` prints, if it was not to search for violations of those that are `left_out`."""
+    return "".join(f"{line}\n" for line in _lines(made, left_out))
 
 
 def simulated_text(simulated: Simulated, what_for: str) -> str:
@@ -32,7 +32,9 @@ def simulated_text(simulated: Simulated, what_for: str) -> str:
     return f"{simulated.number}: {simulated.assignment}: {told}"
 
 
-def document(made: Falsification, source: Source, recordings: Sequence[FileDigest] = ()) -> dict[str, Any]:
+def document(
+    made: Falsification, source: Source, left_out: Sequence[str] = (), recordings: Sequence[FileDigest] = ()
+) -> dict[str, Any]:
     """The JSON document of `ltlc falsify`, with the files of the recording that is kept."""
     return {
         "found": None if made.found is None else _violation(made.found),
@@ -41,8 +43,10 @@ def document(made: Falsification, source: Source, recordings: Sequence[FileDiges
         "simulations": len(made.simulations),
         "shrinking": made.shrinking,
         "exhaustive": made.exhaustive,
+        "interrupted": made.is_interrupted,
         "failed": [_told(each) | {"reason": each.failure} for each in made.failed],
         "properties": [_property(made, label) for label in _labels(made)],
+        "not_searched": list(left_out),
         "provenance": provenance([source], recordings),
     }
 
@@ -62,6 +66,8 @@ def _property(made: Falsification, label: str) -> dict[str, Any]:
         "label": label,
         "verdicts": {verdict.value: len(_with(made, label, verdict)) for verdict in Verdict},
         "not_measured": made.unmeasured.get(label),
+        "not_triggered": sum(label in each.untriggered for each in made.simulations),
+        "left_out": [each.number for each in made.simulations if label in each.left_out],
         "closest": None if closest is None else {**_told(closest), "margin": closest.margins[label]},
     }
 
@@ -81,8 +87,10 @@ def _closest(made: Falsification, label: str) -> Simulated | None:
     return min(known, key=lambda each: each.margins[label], default=None)
 
 
-def _lines(made: Falsification) -> Iterator[str]:
+def _lines(made: Falsification, left_out: Sequence[str]) -> Iterator[str]:
     count = counted(len(made.simulations), "simulation")
+    if made.is_interrupted:
+        yield "Interrupted: the report is about what was simulated before."
     if made.found is not None:
         yield from _found_lines(made, made.found)
     elif made.exhaustive:
@@ -91,6 +99,7 @@ def _lines(made: Falsification) -> Iterator[str]:
         yield f"No property is violated in {count} (seed {made.seed}), which proves nothing."
     if made.found is None:
         yield from (f"  {label}: {_state(made, label)}" for label in _labels(made))
+        yield from (f"  {label}: not searched" for label in left_out)
     if made.failed:
         first = made.failed[0]
         yield f"{counted(len(made.failed), 'simulation')} failed, the first of them {first.number}: {first.failure}"
@@ -104,7 +113,10 @@ def _found_lines(made: Falsification, found: Simulated) -> Iterator[str]:
     where = "with all defaults" if found.number == 1 else f"in simulation {found.number} (seed {made.seed})"
     yield f"{label} is violated {where}."
     shown = made.smallest
-    if shown is None:
+    if shown is None and not made.shrinking:
+        yield "It was not simulated again, so it was not shrunk:"
+        shown = found
+    elif shown is None:
         yield "The same parameters did not violate it again, so they were not shrunk: the simulation is not repeatable."
         shown = found
     else:
@@ -140,6 +152,12 @@ def _state(made: Falsification, label: str) -> str:
         told.append("no comparison of numbers decides it, so it did not guide the search")
     if idle := _with(made, label, Verdict.NOT_STARTED):
         told.append("never started" if len(idle) == len(made.simulations) else f"not started in {len(idle)}")
+    if untriggered := [each for each in made.simulations if label in each.untriggered]:
+        is_all = len(untriggered) == len(made.simulations)
+        told.append("never triggered" if is_all else f"not triggered in {len(untriggered)}")
+    if lacking := [each for each in made.simulations if label in each.left_out]:
+        number, first = counted(len(lacking), "simulation"), lacking[0]
+        told.append(f"steps left out in {number}, as of {first.number}: {first.left_out[label]}")
     if owed := _with(made, label, Verdict.PRESUMABLY_VIOLATED):
         told.append(f"open at the end of {counted(len(owed), 'simulation')}, as of {owed[0].number}")
     return "; ".join(told)

@@ -30,14 +30,17 @@ SPREAD = 0.2
 LEAST_SPREAD = 8
 """So many points are spread at least."""
 
+AT_RANDOM = 8
+"""So many points are drawn at a time where nothing guides."""
+
 STEP = 0.25
 """The standard deviation with which a descent begins: a quarter of each range."""
 
 
-class Proposal(NamedTuple):
-    """A point to be simulated, and the property that is pursued with it, if one is."""
+class Batch(NamedTuple):
+    """Points to be simulated, none of which depends on another, and the property that is pursued, if one is."""
 
-    point: Point
+    points: Sequence[Point]
     pursued: str | None = None
 
 
@@ -48,21 +51,18 @@ class Tried(NamedTuple):
     losses: Losses
 
 
-Proposals = Generator[Proposal, Losses, None]
-"""Takes what was found at each point before it gives the next one; without end."""
+Batches = Generator[Batch, Sequence[Losses], None]
+"""Takes what was found at the points of a batch before it gives the next one."""
 
 
-def proposals(begin: Sequence[Point], budget: int, seed: int) -> Proposals:
-    """Points to be simulated, those of `begin` first; all follow from `seed` and from what was found."""
+def batches(begin: Sequence[Point], budget: int, seed: int) -> Batches:
+    """Points to be simulated, without end, those of `begin` first; all follow from `seed` and from what was found."""
     rng = np.random.default_rng(seed)
     tried: list[Tried] = []
     dimension = len(begin[0])
     # Two points for each coordinate tell where a descent may begin; what more would tell, the descent tells sooner.
     count = max(min(2 * dimension + 1, round(budget * SPREAD)), LEAST_SPREAD)
-    spread = _spread(dimension, count, rng)
-    for point in [*begin, *spread]:
-        losses = yield Proposal(point)
-        tried.append(Tried(point, losses))
+    yield from _tried([*begin, *_spread(dimension, count, rng)], None, tried)
     descents: dict[str, _Descent] = {}
     while True:
         ranking = ranked(tried)
@@ -71,8 +71,16 @@ def proposals(begin: Sequence[Point], budget: int, seed: int) -> Proposals:
                 descents[label] = _Descent(label, tried, rng)
             yield from descents[label].generation(tried)
         if not ranking:
-            point = _anywhere(dimension, rng)
-            tried.append(Tried(point, (yield Proposal(point))))
+            yield from _tried([_anywhere(dimension, rng) for _ in range(AT_RANDOM)], None, tried)
+
+
+def _tried(
+    points: Sequence[Point], pursued: str | None, tried: list[Tried]
+) -> Generator[Batch, Sequence[Losses], Sequence[Losses]]:
+    """A batch; `tried` gets what is found."""
+    losses = yield Batch(points, pursued)
+    tried += map(Tried, points, losses)
+    return losses
 
 
 def ranked(tried: Sequence[Tried]) -> list[str]:
@@ -109,17 +117,14 @@ class _Descent:
         self._dimension = len(start)
         self._strategy = self._from(start)
 
-    def generation(self, tried: list[Tried]) -> Proposals:
+    def generation(self, tried: list[Tried]) -> Batches:
         """The points that come next; `tried` gets what is found."""
         if self._strategy.stop():
             self._strategy = self._from(_anywhere(self._dimension, self._rng))
-        points, losses = self._strategy.ask(), list[float]()
-        for coordinates in points:
-            point = tuple(float(number) for number in coordinates[: self._dimension])
-            found = yield Proposal(point, self._label)
-            tried.append(Tried(point, found))
-            losses.append(found[self._label])
-        self._strategy.tell(points, _finite(losses))
+        population = self._strategy.ask()
+        points = [tuple(map(float, each[: self._dimension])) for each in population]
+        found = yield from _tried(points, self._label, tried)
+        self._strategy.tell(population, _finite([losses[self._label] for losses in found]))
 
     def _from(self, start: Point) -> Any:
         options = {

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Container, Iterator
 from dataclasses import replace
 from decimal import ROUND_CEILING, ROUND_DOWN, ROUND_HALF_EVEN, Context, Decimal
 from typing import Protocol, TypeVar
@@ -36,25 +36,31 @@ Simulation = TypeVar("Simulation", bound=Found)
 
 
 def shrink(
-    found: Simulation, space: Space, fails: Callable[[Assignment], Simulation | None], tried: set[str]
+    found: Simulation,
+    space: Space,
+    failing: Callable[[Iterator[Assignment]], Simulation | None],
+    tried: Container[str],
 ) -> Simulation:
     """The last of those that are found to fail, each simpler than the one before, the first being `found`.
 
-    `fails` simulates an assignment, and gives None if that does not violate the property, or no more may be simulated.
-    Assignments with the keys in `tried` do not violate it; others that do not are added.
+    `failing` simulates assignments, and gives the first that violates the property; None if none does, or no more may
+    be simulated. Those with keys in `tried` were simulated before, and are left out.
     """
-    while True:
-        smaller = None
-        for candidate in simpler(found.assignment, space, found.ended):
-            if candidate.key in tried or size(candidate, space) >= size(found.assignment, space):
-                continue
-            tried.add(candidate.key)
-            smaller = fails(candidate)
-            if smaller is not None:
-                break
-        if smaller is None:
-            return found
+    smaller: Simulation | None = found
+    while smaller is not None:
         found = smaller
+        smaller = failing(_smaller(found, space, tried))
+    return found
+
+
+def _smaller(found: Found, space: Space, tried: Container[str]) -> Iterator[Assignment]:
+    """Assignments that are smaller than that which was `found`, each once, but for those that were `tried`."""
+    given = set[str]()
+    for candidate in simpler(found.assignment, space, found.ended):
+        key = candidate.key
+        if key not in tried and key not in given and size(candidate, space) < size(found.assignment, space):
+            given.add(key)
+            yield candidate
 
 
 def size(assignment: Assignment, space: Space) -> tuple[float, ...]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Generator, Iterable, Mapping
 from dataclasses import field
 
 from ltlc.dataclass import dataclass
@@ -17,8 +17,11 @@ class SimulationError(Exception):
     """A simulation has failed: it has no recording that can be judged, for the reason that is the text."""
 
 
-Simulate = Callable[[Assignment], RunReport]
-"""Simulates, and judges what was recorded, which could all be read. Raises SimulationError."""
+Outcome = RunReport | SimulationError
+"""What was recorded as it was judged, of which all could be read, or why there is none."""
+
+Simulate = Callable[[Iterable[Assignment]], Generator[tuple[Assignment, Outcome], None, None]]
+"""Simulates, some at a time or one by one: what comes of each, in order. Closing it ends those under way."""
 
 
 @dataclass(frozen=True)
@@ -27,7 +30,8 @@ class Simulated:
 
     It has `verdicts` and `margins` by property. The latter are the most that is still possible: what a run leaves open
     at its end counts as met. They are infinite where no comparison decides, and missing where the property cannot be
-    measured. Or it failed, as `failure` says. The `report` is there if a property is violated.
+    measured. In it some properties were `untriggered`: no episode opened; and steps of some were `left_out`, for a
+    reason. Or it failed, as `failure` says. The `report` is there if a property is violated.
     """
 
     number: int
@@ -35,6 +39,8 @@ class Simulated:
     failure: str = ""
     verdicts: Mapping[str, Verdict] = field(default_factory=dict)
     margins: Mapping[str, float] = field(default_factory=dict)
+    untriggered: Collection[str] = ()
+    left_out: Mapping[str, str] = field(default_factory=dict)
     report: RunReport | None = None
 
     @property
@@ -59,11 +65,12 @@ class Simulated:
         return (track.decided_at.time - self.session.beginning) / 1e9
 
 
-def whole(report: RunReport) -> RunReport:
-    """The same, if its recording could be read to the end. Raises SimulationError."""
+def whole(report: RunReport) -> Outcome:
+    """The same, if its recording could be read to the end."""
     if report.session is None or report.is_damaged:
         found = report.diagnostics[-1]
-        raise SimulationError("; ".join(filter(None, [f"its recording cannot be judged: {found.message}", found.help])))
+        reason = f"its recording cannot be judged: {found.message}"
+        return SimulationError(f"{reason}; {found.help}" if found.help else reason)
     return report
 
 

@@ -8,7 +8,7 @@ ours inherit what the parent knows and share what earlier jobs found.
 from __future__ import annotations
 
 from ltlc.base.limits.budget import UNBOUNDED, Budget, Exceeded, Limit
-from ltlc.base.limits.children import Watch, run_all, run_each
+from ltlc.base.limits.children import Watch, in_order, run_all, run_each
 from ltlc.base.limits.memory import at_most
 
-__all__ = ["UNBOUNDED", "Budget", "Exceeded", "Limit", "Watch", "at_most", "run_all", "run_each"]
+__all__ = ["UNBOUNDED", "Budget", "Exceeded", "Limit", "Watch", "at_most", "in_order", "run_all", "run_each"]

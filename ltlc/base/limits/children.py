@@ -21,7 +21,7 @@ import sys
 import threading
 import time
 import warnings
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import field, replace
 from pathlib import Path
@@ -84,7 +84,7 @@ def run_all(
 
 def run_each(
     jobs: Sequence[Callable[[], Result]], budget: Budget, workers: int | None = None
-) -> Iterator[tuple[int, Result | Exceeded]]:
+) -> Generator[tuple[int, Result | Exceeded], None, None]:
     """The number of each job and its result, as they come, from as many `workers` (default: one for each CPU).
 
     Otherwise as `run_all`. The caller may stop at any time: closing the iterator ends the children.
@@ -96,6 +96,17 @@ def run_each(
             for number, outcome in children.reports():
                 left -= 1
                 yield number, _value(outcome)
+
+
+def in_order(numbered: Iterable[tuple[int, Result]]) -> Iterator[Result]:
+    """What has the numbers 0, 1, and so on, in the order of these, each as soon as it is its turn."""
+    early: dict[int, Result] = {}
+    turn = 0
+    for number, result in numbered:
+        early[number] = result
+        while turn in early:
+            yield early.pop(turn)
+            turn += 1
 
 
 def _refuse_without_fork() -> None:

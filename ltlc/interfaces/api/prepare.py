@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from functools import cached_property
 from os import PathLike
 from pathlib import Path
@@ -36,12 +37,35 @@ FILES = (".txt", ".ltlc")
 
 @dataclass(frozen=True)
 class Prepared:
-    """A specification with its monitors, each made within `budget`, and further findings."""
+    """A specification with its monitors, each made within `budget`, and further findings.
+
+    Properties that were not chosen are `left_out`: they are in the text, and nowhere else.
+    """
 
     specification: Specification
     compiled: Sequence[Compiled]
     diagnostics: tuple[Diagnostic, ...]
     budget: Budget
+    left_out: tuple[str, ...] = ()
+
+    def only(self, labels: Sequence[str]) -> Prepared:
+        """The same with the properties called so only; with all of them, if there are no `labels`.
+
+        Raises UnusableInput for a label that no property has.
+        """
+        known = [each.label for each in self.specification.properties]
+        for label in labels:
+            if label not in known:
+                hint = did_you_mean(label, known) or f"there are {', '.join(known)}"
+                raise UnusableInput((), f"there is no property `{label}`: {hint}")
+        chosen = set(labels or known)
+        properties = tuple(each for each in self.specification.properties if each.label in chosen)
+        return replace(
+            self,
+            specification=replace(self.specification, properties=properties),
+            compiled=[each for each in self.compiled if each.specification.label in chosen],
+            left_out=tuple(label for label in known if label not in chosen),
+        )
 
     @cached_property
     def late(self) -> tuple[Diagnostic, ...]:

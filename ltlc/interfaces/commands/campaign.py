@@ -15,12 +15,13 @@ from pathlib import Path
 from ltlc.backends.python.plan import plan_code
 from ltlc.base.diagnostics import Diagnostic, Severity
 from ltlc.base.files import refuse_unwritable, write_all
+from ltlc.base.limits import in_order
 from ltlc.interfaces.commands.common import UNUSABLE, overwritten, refused, report, unusable, unwritable
 from ltlc.interfaces.commands.cutting import show_extracts, show_nothing_cut
 from ltlc.interfaces.commands.page import Page
 from ltlc.interfaces.commands.progress import progress, saying
 from ltlc.monitoring.campaigns.bundle import Bundle, BundleError
-from ltlc.monitoring.campaigns.campaign import Workers, here, in_order, judge_all, on_this_machine
+from ltlc.monitoring.campaigns.campaign import Workers, here, judge_all, on_this_machine
 from ltlc.monitoring.campaigns.engine import EngineError, on_engine
 from ltlc.monitoring.campaigns.forms import FORMS
 from ltlc.monitoring.campaigns.outcomes import Outcome
@@ -94,7 +95,7 @@ def _judge(judge: Judge, found: Found, options: argparse.Namespace, page: Page |
         waiting = [place for place in found.places if place.name not in kept]
         workers = here(page) if page is not None else open_.enter_context(_workers(options, len(waiting)))
         judged = _watched(judge_all(judge, waiting, workers), len(waiting), options, results)
-        for outcome in in_order(numbers, chain(earlier, judged)):
+        for outcome in in_order((numbers[each.place.name], each) for each in chain(earlier, judged)):
             tally.add(outcome, is_kept=outcome.place.name in kept)
             remarks.add(outcome.diagnostics)
             sys.stdout.write(form.add(outcome))

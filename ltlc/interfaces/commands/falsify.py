@@ -5,10 +5,15 @@ from __future__ import annotations
 import argparse
 import json
 import shutil
+import signal
 import sys
+from collections.abc import Generator, Iterable, Iterator, Mapping, Sequence
+from contextlib import closing, contextmanager
+from dataclasses import replace
 from pathlib import Path
 
 from ltlc.automata import Budget
+from ltlc.base.errors import UnusableInput
 from ltlc.base.files import scratch
 from ltlc.falsification import keeping
 from ltlc.falsification import report as reports
@@ -17,13 +22,13 @@ from ltlc.falsification.command import Command, command_of
 from ltlc.falsification.examples import examples
 from ltlc.falsification.falsify import Falsification, Watch, falsify
 from ltlc.falsification.parameters import space_of
-from ltlc.falsification.simulation import Simulated, SimulationError, is_violated, whole
+from ltlc.falsification.simulation import Outcome, Simulated, SimulationError, is_violated, whole
 from ltlc.inputs.recordings.digests import digests
 from ltlc.inputs.recordings.reading import ReadOptions
 from ltlc.interfaces.api.prepare import Prepared
 from ltlc.interfaces.commands import arguments
 from ltlc.interfaces.commands.common import compile_file, report, unusable, unwritable, without_notes
-from ltlc.monitoring.judging.run import Judge, RunReport
+from ltlc.monitoring.judging.run import Judge
 from ltlc.semantics.encodings import ENCODINGS
 
 
@@ -53,12 +58,26 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="what changes during a run: throttle=-1..1@8 has eight control points, which are as far apart; "
         "may be repeated",
     )
+    parser.add_argument(
+        "--property",
+        action="append",
+        default=[],
+        metavar="LABEL",
+        help="a property to be violated (default: any of the file); may be repeated",
+    )
     parser.add_argument("--seconds", type=float, help="how long a simulation is to run; needed for --input")
     parser.add_argument(
         "--simulations", type=arguments.count, default=100, metavar="N", help="how many at most (default: %(default)s)"
     )
     parser.add_argument(
         "--seed", type=_seed, default=0, metavar="N", help="another one searches elsewhere (default: %(default)s)"
+    )
+    parser.add_argument(
+        "--jobs",
+        type=arguments.count,
+        default=1,
+        metavar="N",
+        help="how many simulations run at a time, which changes nothing but how long it takes (default: %(default)s)",
     )
     parser.add_argument(
         "--time-limit",
@@ -99,14 +118,42 @@ def run(options: argparse.Namespace) -> int:
     prepared = compile_file(options)
     if isinstance(prepared, int):
         return prepared
-    with scratch() as folder:
-        simulations = _Simulations(command, _judge(prepared, options), folder)
+    try:
+        prepared = prepared.only(options.property)
+    except UnusableInput as error:
+        return unusable(str(error))
+    with _environments(options.jobs) as environments, scratch() as folder, _ended_as_by_ctrl_c():
+        if len(environments) < options.jobs:
+            return unusable(f"--jobs {options.jobs}: only {len(environments)} ROS domains are free on this machine")
+        simulations = _Simulations(replace(command, environments=environments), _judge(prepared, options), folder)
         try:
             begin = examples(prepared.specification, ENCODINGS[options.encoding], space, Budget(*options.budget))
             found = falsify(simulations, space, options.simulations, options.seed, begin, _watch(options))
         except SimulationError as error:
             return unusable(f"the first simulation, with all defaults, failed: {error}")
-        return _told(found, prepared, simulations, options)
+        return _told(found, prepared, options)
+
+
+@contextmanager
+def _environments(jobs: int) -> Iterator[Sequence[Mapping[str, str]]]:
+    """The variables that each of so many simulations at a time has: a ROS domain of its own, unless it is alone."""
+    if jobs == 1:
+        yield [{}]
+        return
+    from ltlc.falsification.domains import free_domains  # which one job does without
+
+    with free_domains(jobs) as domains:
+        yield [{"ROS_DOMAIN_ID": str(domain)} for domain in domains]
+
+
+@contextmanager
+def _ended_as_by_ctrl_c() -> Iterator[None]:
+    """A request to end, as a CI server makes it, is taken as Ctrl-C is: what runs is ended, what was found is kept."""
+    before = signal.signal(signal.SIGTERM, signal.default_int_handler)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
 
 
 def _judge(prepared: Prepared, options: argparse.Namespace) -> Judge:
@@ -125,31 +172,28 @@ def _judge(prepared: Prepared, options: argparse.Namespace) -> Judge:
 
 
 class _Simulations:
-    """Simulates by a command in a folder for each time, and judges; folders with violations stay, by assignment."""
+    """Simulates by a command in a folder for each time, and judges; only folders with violations stay."""
 
     def __init__(self, command: Command, judge: Judge, folder: Path) -> None:
         self._command = command
         self._judge = judge
         self._folder = folder
-        self._count = 0
-        self.recordings: dict[str, Path] = {}
+        self._is_first = True
 
-    def __call__(self, assignment: Assignment) -> RunReport:
-        self._count += 1
-        folder = self._folder / str(self._count)
-        folder.mkdir()
-        is_kept = False
-        try:
-            path = self._command(assignment, folder)
-            found = whole(self._judge.judge(path))
-            if self._count == 1:
-                report(without_notes(found.diagnostics))
-            if is_kept := is_violated(found):
-                self.recordings[assignment.key] = path
-            return found
-        finally:
-            if not is_kept:
-                shutil.rmtree(folder)
+    def __call__(self, assignments: Iterable[Assignment]) -> Generator[tuple[Assignment, Outcome], None, None]:
+        with closing(self._command.simulate(assignments, self._folder)) as left:
+            for assignment, folder, recording in left:
+                outcome = recording if isinstance(recording, SimulationError) else self._judged(recording)
+                if isinstance(outcome, SimulationError) or not is_violated(outcome):
+                    shutil.rmtree(folder)
+                yield assignment, outcome
+
+    def _judged(self, recording: Path) -> Outcome:
+        judged = self._judge.judge(recording)
+        if self._is_first and judged.session is not None:
+            self._is_first = False
+            report(without_notes(judged.diagnostics))
+        return whole(judged)
 
 
 def _watch(options: argparse.Namespace) -> Watch | None:
@@ -158,19 +202,19 @@ def _watch(options: argparse.Namespace) -> Watch | None:
         return None
 
     def watch(simulated: Simulated, what_for: str) -> None:
-        if simulated.number > 1 or not simulated.failure:  # which is reported otherwise
-            print(reports.simulated_text(simulated, what_for), file=sys.stderr, flush=True)
+        print(reports.simulated_text(simulated, what_for), file=sys.stderr, flush=True)
 
     return watch
 
 
-def _told(found: Falsification, prepared: Prepared, simulations: _Simulations, options: argparse.Namespace) -> int:
+def _told(found: Falsification, prepared: Prepared, options: argparse.Namespace) -> int:
     """Print the report, and keep what was found; the exit code."""
     shown = found.smallest or found.found
-    path = None if shown is None else simulations.recordings[shown.assignment.key]
+    path = None if shown is None or shown.report is None else Path(shown.report.recording)
     files = () if path is None else digests(path)
-    document = json.dumps(reports.document(found, prepared.specification.source, files), indent=2) + "\n"
-    sys.stdout.write(document if options.format == "json" else reports.text(found))
+    made = reports.document(found, prepared.specification.source, prepared.left_out, files)
+    document = json.dumps(made, indent=2) + "\n"
+    sys.stdout.write(document if options.format == "json" else reports.text(found, prepared.left_out))
     if path is not None:
         try:
             keeping.keep(path.parent, options.keep, document)

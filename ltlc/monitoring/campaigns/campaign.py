@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -103,14 +103,3 @@ def on_this_machine(jobs: int | None) -> Workers:
 
 def _end_of(found: Exceeded) -> str:
     return found.detail or "its process ran out of memory or crashed"
-
-
-def in_order(names: Mapping[str, int], outcomes: Iterable[Outcome]) -> Iterator[Outcome]:
-    """`outcomes` in the order of the numbers that `names` have, from 0 on, each as soon as it is its turn."""
-    early: dict[int, Outcome] = {}
-    turn = 0
-    for outcome in outcomes:
-        early[names[outcome.place.name]] = outcome
-        while turn in early:
-            yield early.pop(turn)
-            turn += 1
