@@ -5,7 +5,7 @@ Require Import Ltl Properties Anew Past Relativise Encodings Agreement Clocks Re
   ClockSteps Times OneClock
   Lasso Monitor Conditions Judgements Moves Machines Distribute Certificate Infinite InTime Thresholds
   Program Follows Followed Shown Counts Intervals Held Counting Evidence Instances Diagrams Guard GuardedPlaces
-  GuardCheck GuardInTime GuardedNode Robustness Bands Tightness.
+  GuardCheck GuardInTime GuardedNode Robustness CountMargins Bands Tightness.
 
 (** Nothing. *)
 Definition constructive :=
@@ -23,7 +23,8 @@ Definition constructive :=
    @next_part_right, @counted_parts_right, @whole_means, @evidence_of_instances, @lines_of_instance, @opened_by_is,
    @guarded_well, @never_at_a_loss, @in_time, @few_are_sent, @time_goes_on, @necessary, @guarded_verdict,
    @check_guard_sound, @check_guard_of_something, @moves_in_time, @started_clocks_wait, @node_is_guarded, @robustness_right, @looking_back_right,
-   @robustness_near, @looking_back_near, @same_verdict, @computed_right, @in_band, @band_narrows,
+   @robustness_near, @looking_back_near, @same_verdict, @nth_greatest_is, @count_margin_right, @count_margin_near,
+   @computed_right, @in_band, @band_narrows,
    @band_verdict, @looking_back_known, @interval_continued, @band_tight, @letter_exists, @band_wider).
 
 (** At most the law of the excluded middle. *)

@@ -34,7 +34,7 @@ from ltlc.runtime.tracking import Observer, Track
 from ltlc.semantics import ltl
 from ltlc.semantics.properties import predicates
 from ltlc.semantics.robustness import Measured, held, margin, robustness, with_past
-from ltlc.semantics.timed_atoms import News, atoms_within
+from ltlc.semantics.timed_atoms import news_that_counts
 from ltlc.semantics.verdicts import Verdict
 from ltlc.specification.margins import by_how_much
 
@@ -48,7 +48,7 @@ def test_columns_have_the_robustness_of_the_definition_at_every_step(
     monkeypatch.setattr(extremes, "LANE", seed % 3 + 2)
     monkeypatch.setattr(extremes, "LANES", seed % 3 + 3)
     property_, steps, until, past, seen = measured_run(seed)
-    news = {each.name for part in predicates(property_) for each in atoms_within(part) if isinstance(each, News)}
+    news = {each.name for part in predicates(property_) for each in news_that_counts(part)}
     line = Timeline(np.array([step.time for step in steps]), until)
     margins = {name: np.array([step.margins[name] for step in steps]) for name in steps[0].margins}
     run = with_past(held(steps, until, news), past, seen.session)
@@ -84,7 +84,7 @@ def continued(chance: Random, steps: Sequence[Measured], until: int, later: Sequ
 def test_what_is_still_possible_contains_the_robustness_of_every_continuation(seed: int) -> None:
     property_, steps, until, past, seen = measured_run(seed)
     chance = Random(seed)
-    news = {each.name for part in predicates(property_) for each in atoms_within(part) if isinstance(each, News)}
+    news = {each.name for part in predicates(property_) for each in news_that_counts(part)}
     count = chance.randrange(1, len(steps) + 1)
     now = steps[count].time if count < len(steps) else until
     line = Timeline(np.array([step.time for step in steps[:count]]), now)
@@ -115,8 +115,11 @@ class Captured:
 
     def hear(self, *_: Any) -> None: ...
 
-    def repeat(self, times: int) -> None:
-        self.steps += self.steps[-1:] * times
+
+class EachStep(JudgedTrack):
+    """Takes every tick by itself, whose time is then known."""
+
+    is_settled = property(lambda self: False, lambda self, value: None)
 
 
 def measured(drawn: Drawn) -> tuple[dict[str, Curve], dict[str, Captured], Session, Any, dict[str, Band]]:
@@ -128,7 +131,7 @@ def measured(drawn: Drawn) -> tuple[dict[str, Curve], dict[str, Captured], Sessi
     captured: dict[str, Captured] = {each.specification.label: Captured() for each in compiled}
 
     def track(property_: MonitoredProperty, keep: bool, observer: Observer | None) -> Track:
-        return JudgedTrack(property_, keep, observer, False, captured[property_.label])  # type: ignore[arg-type]
+        return EachStep(property_, keep, observer, False, captured[property_.label])  # type: ignore[arg-type]
 
     reference, prepared = ByRows(Session(plan, make=track)), prepare_all(compiled, specification.source)
     fast = ByBlocks(Session(plan), prepared)
@@ -140,12 +143,23 @@ def measured(drawn: Drawn) -> tuple[dict[str, Curve], dict[str, Captured], Sessi
         measuring.take(block)
         fast.take(block)
     end = fast.session.time
+    if end is not None:
+        measuring.finish(end)
+        reference.advance(end)
     return measuring.curves(end), captured, reference.session, compiled, measuring.bands(end or 0)
+
+
+class Counting(Draw):
+    """Draws properties that count."""
+
+    def _atom(self) -> str:
+        counts = ("once v > 1 2 times within 300 ms", "once flag 2 times", "once (new w and w > 0) 3 times")
+        return self.chance.choice(counts) if self.chance.random() < 0.3 else super()._atom()
 
 
 @pytest.mark.parametrize("seed", range(share_of(120)))
 def test_curves_begin_with_a_margin_whose_sign_is_the_verdict(seed: int) -> None:
-    drawn = Draw(Random(seed)).drawn()
+    drawn = (Draw, Counting)[seed % 2](Random(seed)).drawn()
     with sizes(Random(seed)):
         curves, captured, session, *_ = measured(drawn)
     for track in session.tracks:
@@ -163,7 +177,7 @@ def test_curves_begin_with_a_margin_whose_sign_is_the_verdict(seed: int) -> None
 
 @pytest.mark.parametrize("seed", range(share_of(120)))
 def test_what_is_still_possible_has_one_sign_only_if_the_verdict_is_permanent(seed: int) -> None:
-    drawn = Draw(Random(seed)).drawn()
+    drawn = (Draw, Counting)[seed % 2](Random(seed)).drawn()
     with sizes(Random(seed)):
         curves, _, session, _, bands = measured(drawn)
     for track in session.tracks:
@@ -233,16 +247,62 @@ def test_a_condition_has_the_margin_that_the_documentation_says(condition: str, 
     ("text", "reason"),
     [
         ("p: each i of n: never v > i", "`each`: every id or message has a run of its own"),
-        ("p: after flag, never v > @{v, opening}", "values at an opening"),
-        ("p: never once v > 1 3 times", "a count"),
+        (
+            "p: after historically flag for 1 ns, never v > @{v, opening}",
+            "time opens or closes a scope, at whose opening a value is read, between two steps",
+        ),
         ("p: within 1 s, after flag, never v > 1", "a bound on temporal operators inside one another"),
-        ("_rate_ = 10\np: never v > 1", "ticks"),
+        ("_rate_ = 10\np: always age(v) < 1 s", "messages between ticks, from which ages count"),
     ],
 )
 def test_what_cannot_be_measured_has_no_margins_but_a_reason(text: str, reason: str) -> None:
     rows = [Row(k, {"v": 1.0, "flag": True, "n": 1}) for k in range(2)]
     curves, *_ = measured(Drawn(DECLARATIONS + text, [rows]))
     assert (curves["p"].whole, curves["p"].reason) == (None, reason)
+
+
+def test_values_at_openings_are_those_of_the_run() -> None:
+    flags, values = [False, True, True, False, True, True], [5.0, 1.0, 3.0, 9.0, 4.0, 4.5]
+    rows = [Row(k, {"flag": flag, "v": v}) for k, (flag, v) in enumerate(zip(flags, values, strict=True))]
+    text = DECLARATIONS + "p: after_until flag, not flag, always v <= @{v, opening} + 3"
+    for parts in ([rows], [rows[:2], rows[2:5], rows[5:]]):
+        curves, *_ = measured(Drawn(text, parts))
+        assert curves["p"].margins.tolist() == [1, 1, 1, 2.5, 2.5, 2.5]
+        assert curves["p"].decided == (2, "v <= @{v, opening} + 3")
+
+
+def test_a_closing_event_reads_the_value_at_its_opening() -> None:
+    rows = [
+        Row(k, {"flag": True, "v": v, "w": w}) for k, (v, w) in enumerate([(1, 9), (1.5, 8), (3, 7), (3, 6), (3, 5)])
+    ]
+    text = DECLARATIONS + "p: after_until flag, v > @{v, opening} + 1, eventually w < 7.5"
+    curves, *_ = measured(Drawn(text, [rows]))
+    assert curves["p"].margins.tolist() == [-0.5, -0.5, 1, 1, 1]
+
+
+def test_ticks_are_the_steps() -> None:
+    rows = [Row(k * 10**8 // 4, {"v": v}) for k, v in enumerate([1.0, 5.0, 2.0, 3.0, 4.0, 1.5])]
+    curves, *_ = measured(Drawn(DECLARATIONS + "_rate_ = 10\np: always v < 5", [rows[:2], rows[2:]]))
+    assert curves["p"].times.tolist() == [0, 10**8]
+    assert curves["p"].margins.tolist() == [1, 1]
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("never once v > 1 2 times", -0.25),
+        ("never once v > 1 2 times within 2 s", 0.25),
+        ("never once v > 1 3 times", 0.25),
+        ("never once v > 1 7 times", math.inf),
+        ("never once (new v and v > 1) 2 times within 2 s", 0.25),
+        ("always rate(v) >= 1 Hz over 1 s", math.inf),
+        ("always rate(v) >= 1 Hz over 1 s and v < 2", 0.25),
+    ],
+)
+def test_a_count_has_the_margin_of_the_occurrence_that_reaches_it(text: str, expected: float) -> None:
+    rows = [Row(k * 10**9, {"v": v}) for k, v in enumerate([1.5, 0.5, 0.75, 1.75, 0.25, 0.75])]
+    curves, *_ = measured(Drawn(DECLARATIONS + f"p: {text}", [rows]))
+    assert curves["p"].whole == expected
 
 
 def test_a_message_without_a_value_has_no_margin() -> None:

@@ -127,13 +127,15 @@ def test_no_assignment_is_simulated_twice_in_a_search() -> None:
 
 
 def test_a_property_without_a_margin_is_judged_and_reported_as_no_guide() -> None:
-    text = f"{DECLARATIONS}counted: never once new v 4 times\nslow: never v > 2"
+    text = f"{DECLARATIONS}counted: never once new v 4 times\nslow: never v > 2\n"
+    text += "opened: after historically v < 9 for 1 ns, never v > @{v, opening} + 9"
 
     def simulate(given: Mapping[str, Any]) -> Rows:
         return [(k / 10, {"v": 0}) for k in range(given["messages"])]
 
     found = ltlc.falsify(text, simulate, ["messages:int=1..1..2"], simulations=2)
-    assert "counted: not measured, so it did not guide the search: a count" in str(found)
+    assert "counted: no comparison of numbers decides it, so it did not guide the search" in str(found)
+    assert "opened: not measured, so it did not guide the search: time opens or closes a scope" in str(found)
     assert ltlc.falsify(text, simulate, ["messages:int=1..1..9"], simulations=9).violated == "counted"
 
 

@@ -31,7 +31,18 @@ from ltlc.semantics.properties import (
     predicates,
 )
 from ltlc.semantics.robustness import Measured, Run, held, robustness, with_past
-from ltlc.semantics.timed_atoms import Historically, News, Once, PastAtom, Previously, Since, atoms_within
+from ltlc.semantics.timed_atoms import (
+    Historically,
+    News,
+    Occurred,
+    Once,
+    PastAtom,
+    Previously,
+    Since,
+    atoms_within,
+    counts_of,
+    news_that_counts,
+)
 
 P, Q, X, Y = map(Atom, "pqxy")
 INFINITY = math.inf
@@ -81,6 +92,10 @@ def test_each_form_has_the_margin_that_decides_it(property_: Property, of: Run, 
         (Historically("o", P, 1), [-INFINITY, -2, -2, -1]),
         (Since("o", P, Q), [5, -2, -2, -1]),
         (Since("o", P, Q, 1), [5, -2, -3, -1]),
+        (Occurred("o", P, 1, None, begins=True), [1, 1, 2, 2]),
+        (Occurred("o", P, 2, None, begins=True), [-INFINITY, -2, 1, 1]),
+        (Occurred("o", P, 2, 1, begins=True), [-INFINITY, -2, -2, -3]),
+        (Occurred("o", P, 2, 1, begins=True, presumed=True), [INFINITY, INFINITY, -2, -3]),
     ],
 )
 def test_the_past_has_the_margins_of_its_definition(atom: PastAtom, expected: list[float]) -> None:
@@ -136,9 +151,10 @@ def test_at_a_margin_of_0_either_verdict_is_possible(property_: Property, rows: 
 
 def measured_run(seed: int) -> tuple[Property, list[Measured], int, tuple[PastAtom, ...], instants.Observation]:
     """A property in time, and a run with margins of its letters."""
-    draw = Draw(seed)
+    draw = Draw(seed, may_count=True)
     property_, seen = draw.property(), draw.run(most=4)
-    atoms = dict.fromkeys(each for part in predicates(property_) for each in atoms_within(part))
+    counted = [count.operand for part in predicates(property_) for count in counts_of(part)]
+    atoms = dict.fromkeys(each for part in (*counted, *predicates(property_)) for each in atoms_within(part))
     news = {each.name for each in atoms if isinstance(each, News)}
 
     def margins(letter: frozenset[str]) -> Mapping[str, float]:
@@ -153,7 +169,7 @@ def measured_run(seed: int) -> tuple[Property, list[Measured], int, tuple[PastAt
 @pytest.mark.parametrize("seed", range(share_of(300)))
 def test_in_time_the_sign_is_the_verdict_on_instants(seed: int) -> None:
     property_, steps, until, past, seen = measured_run(seed)
-    news = [each for part in predicates(property_) for each in atoms_within(part) if isinstance(each, News)]
+    news = [each for part in predicates(property_) for each in news_that_counts(part)]
     word = instants.with_past(instants.instants(seen.steps, until, news), past, seen.session)
     run = with_past(held(steps, until, {each.name for each in news}), past, seen.session)
     found = robustness(run, property_)

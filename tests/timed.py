@@ -55,9 +55,10 @@ def message_of(news: News) -> News:
 class Draw:
     """What a generator makes: the same seed, the same properties and runs."""
 
-    def __init__(self, seed: int | random.Random, news: Sequence[News] = (ARRIVAL,)) -> None:
+    def __init__(self, seed: int | random.Random, news: Sequence[News] = (ARRIVAL,), may_count: bool = False) -> None:
         self.chance = seed if isinstance(seed, random.Random) else random.Random(seed)
         self._news = news
+        self._may_count = may_count
 
     def run(self, signals: Sequence[str] = SIGNALS, most: int = 6) -> Observation:
         """A run of 1 to `most` steps, some of them at one time."""
@@ -84,7 +85,7 @@ class Draw:
             p, q = (self.chance.choice(operands) for _ in range(2))
             name, bound = f"past {number}", self.chance.choice((None, 1, 2, 3))
             news = self.chance.choice(self._news)
-            kinds = (
+            kinds: tuple[TimedAtom, ...] = (
                 Previously(name, p),
                 Once(name, p, bound),
                 Historically(name, p, bound),
@@ -92,8 +93,17 @@ class Draw:
                 Age(name, message_of(news), self.chance.randint(0, 3)),
                 news,
             )
-            found.append(self.chance.choice(kinds))
+            found.append(self.chance.choice((*kinds, *self._counts(name, bound))))
         return found
+
+    def _counts(self, name: str, bound: int | None) -> list[Occurred]:
+        """Counts of what begins, and of messages."""
+        if not self._may_count:
+            return []
+        times, news = self.chance.randint(1, 3), self.chance.choice(self._news)
+        begins, comes = self.chance.choice((X, ltl.Not(Y), ltl.And(X, Y))), self.chance.choice((news, ltl.And(news, X)))
+        is_presumed = bound is not None and self.chance.random() < 1 / 3
+        return [Occurred(name, begins, times, bound, True), Occurred(name, comes, times, bound, False, is_presumed)]
 
     def _predicate(self) -> Formula:
         return self.chance.choice(self._predicates)

@@ -9,7 +9,7 @@ from ltlc.assurance.evidence.parts import Part, open_part
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.instants import Instant
 from ltlc.semantics.ltl import TRUE, And, Formula
-from ltlc.semantics.timed_atoms import clock_operands, counts_of, news_that_counts
+from ltlc.semantics.timed_atoms import Clock, clock_operands, counts_of, news_that_counts
 from ltlc.semantics.timed_run import TimedRun
 from ltlc.semantics.trackers import trackers_of
 from ltlc.specification.specification import PropertySpecification
@@ -38,6 +38,10 @@ class Opened:
         """Which are open, as bits of a letter behind those of the atoms."""
         return self._bits << len(self._names)
 
+    def bit(self, scope: Clock) -> int:
+        """That of a scope."""
+        return 1 << len(self._names) + [*self._scopes].index(scope)
+
     def step(self, time: Nanoseconds, letter: int, number: int) -> None:
         """A step with another letter than was held, or at the time of the last; what comes between opens no scope."""
         names = frozenset(name for place, name in enumerate(self._names) if letter >> place & 1)
@@ -62,10 +66,14 @@ class Opened:
         self._since = tuple(open_part(scope, part, self._since is None, since)[0] for scope, since in pairs)
         return sum((since[0] is not None) << number for number, since in enumerate(self._since))
 
+    def moves_by(self, until: Nanoseconds) -> bool:
+        """Whether time opens or closes a scope between two steps, in a run that ends at `until`."""
+        self._hold(list(self._run.hold(until)))
+        return self._moved is not None and self._moved <= until
+
     def stated(self, until: Nanoseconds) -> tuple[StatedScope, ...] | str:
         """From which steps up to which the scopes are open in a run that ends at `until`; or why that is not said."""
-        self._hold(list(self._run.hold(until)))
-        if self._moved is not None and self._moved <= until:
+        if self.moves_by(until):
             return "time opens or closes a scope, at whose opening it reads a value, between two steps"
         spans = [_spans([step for time, step in turns if time <= until]) for turns in self._turns]
         if sum(map(len, spans)) > MOST_SPANS:

@@ -36,18 +36,22 @@ from ltlc.semantics.properties import (
     Until,
     Within,
 )
-from ltlc.semantics.timed_atoms import Age, Historically, Once, PastAtom, Previously, Since
+from ltlc.semantics.timed_atoms import Age, Historically, Occurred, Once, PastAtom, Previously, Since, news_of
 
 TRUE, FALSE = math.inf, -math.inf
 
 
 @dataclass(frozen=True, slots=True)
 class Measured:
-    """An instant: its time, the margin of each atom, by name, and by how much the segment judged has ended there."""
+    """An instant: its time, the margin of each atom, by name, and by how much the segment judged has ended there.
+
+    `by_time` says that it is no step: margins are held.
+    """
 
     time: Nanoseconds
     margins: Mapping[str, float]
     ended: float = FALSE
+    by_time: bool = False
 
 
 Run = tuple[Measured, ...]
@@ -177,14 +181,14 @@ def held(steps: Sequence[Measured], until: Nanoseconds, news: Collection[str] = 
         instant
         for step, end in zip(steps, ends, strict=True)
         for quiet in [{name: FALSE if name in news else number for name, number in step.margins.items()}]
-        for instant in (step, *(Measured(time, quiet) for time in range(step.time + 1, end + 1)))
+        for instant in (step, *(Measured(time, quiet, by_time=True) for time in range(step.time + 1, end + 1)))
     )
 
 
 def with_past(run: Run, atoms: Iterable[PastAtom], session: Nanoseconds | None = None) -> Run:
     """`run` with the margin of each of `atoms`, those that decide an atom before it.
 
-    The session began at `session`, by default at the first instant. Raises TypeError of a count.
+    The session began at `session`, by default at the first instant.
     """
     for atom in atoms:
         found = [_looking_back(atom, run, n, session) for n in range(len(run))]
@@ -222,5 +226,21 @@ def _looking_back(atom: PastAtom, run: Run, n: int, session: Nanoseconds | None)
             arrivals = [run[k].time for k in range(n + 1) if of(news)(k) > 0]
             began = run[0].time if session is None else session
             return TRUE if run[n].time - (arrivals[-1] if arrivals else began) <= most else FALSE
+        case Occurred(_, _, times, within, _, presumed):
+            recent = [k for k in range(n + 1) if within is None or ago(k) <= within]
+            if presumed and 0 in recent:
+                return TRUE
+            greatest = sorted((_occurs(atom, run, k) for k in recent), reverse=True)
+            return greatest[times - 1] if len(greatest) >= times else FALSE
         case _:
             raise TypeError(f"not a margin: {atom!r}")
+
+
+def _occurs(count: Occurred, run: Run, k: int) -> float:
+    """By how much what is counted occurs at the instant k: at steps only."""
+    if run[k].by_time:
+        return FALSE
+    here = margin(count.operand, run[k].margins)
+    if not count.begins:
+        return min(here, _greatest(run[k].margins[news.name] for news in news_of(count.operand)))
+    return min(here, -margin(count.operand, run[k - 1].margins)) if k else here

@@ -10,6 +10,7 @@ from ltlc.inputs.recordings.rows import Column, Row
 from ltlc.monitoring.columns.measuring import Band, Measuring
 from ltlc.monitoring.columns.prepared import Prepared
 from ltlc.monitoring.columns.session import ByBlocks
+from ltlc.runtime.rows import ByRows
 from ltlc.runtime.sampling import Value
 from ltlc.runtime.session import Plan, Session
 from ltlc.semantics.durations import Nanoseconds
@@ -44,5 +45,7 @@ class Bands:
         self._measure()
         if not is_over and time <= self._judged.session.end:
             return self._measuring.bands(time)
+        self._measuring.finish(time)
+        ByRows(self._judged.session).advance(time)
         curves = self._measuring.curves(time).items()
         return {label: Band(reason=c.reason) if c.whole is None else Band(c.whole, c.whole) for label, c in curves}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from itertools import chain
 
 import numpy as np
@@ -24,6 +25,26 @@ Taken = tuple[Value | None, ...]
 """For each value at an opening, what was taken; None where its scope is not open, and it is the latest value."""
 
 
+Inputs = Mapping[Expression, Array | ByStep]
+"""What a property reads at each of its steps."""
+
+
+def inputs_at(of: Prepared, steps: Steps) -> Inputs:
+    """What a property reads at `steps`. Raises UnsupportedError."""
+    return {
+        read: arrays_at(read, steps) if read.type.is_array else np.asarray(value(read, steps)) for read in of.inputs
+    }
+
+
+def with_taken(of: Prepared, steps: Steps, inputs: Inputs, part: slice, taken: Taken) -> Given:
+    """A part of `steps`, at which `inputs` are read, as long as the same values are `taken`."""
+    known = {read: column[part] for read, column in inputs.items()}
+    for opening, each in zip(of.openings, taken, strict=True):
+        latest = known[Held(opening.signal, 0, opening.type)]
+        known[opening] = latest if each is None else _repeated(each, latest)
+    return Given(steps.columns, steps.base, steps.first, known, count=part.stop - part.start)
+
+
 class KeptLetters:
     """Where the letter of a property is not that of the step before, as long as no other values are taken."""
 
@@ -31,9 +52,7 @@ class KeptLetters:
         """Raises UnsupportedError."""
         self._track, self._of, self._count = track, of, len(steps)
         self._steps = steps
-        self._inputs: dict[Expression, Array | ByStep] = {
-            read: arrays_at(read, steps) if read.type.is_array else np.asarray(value(read, steps)) for read in of.inputs
-        }
+        self._inputs = inputs_at(of, steps)
         taken = [getattr(track.monitor, kept.attribute, None) for kept in track.property.kept]
         numbers = chain.from_iterable(each if isinstance(each, tuple) else (each,) for each in taken)
         if any(isinstance(each, int) and abs(each) > EXACT for each in numbers):
@@ -74,11 +93,7 @@ class KeptLetters:
         Once the verdict is permanent, letters do not matter.
         """
         start = max(first - 1, 0)
-        known: dict[Expression, Array | ByStep] = {read: column[start:end] for read, column in self._inputs.items()}
-        for opening, each in zip(self._of.openings, taken, strict=True):
-            latest = known[Held(opening.signal, 0, opening.type)]
-            known[opening] = latest if each is None else _repeated(each, latest)
-        given = Given(self._steps.columns, self._steps.base, self._steps.first, known, count=end - start)
+        given = with_taken(self._of, self._steps, self._inputs, slice(start, end), taken)
         differs = np.zeros(end - start, np.bool_)
         for atom in self._of.atoms if self._track.decided_at is None else ():
             mask = np.broadcast_to(value(atom.holds, given), end - start)

@@ -12,14 +12,15 @@ from numpy.typing import NDArray
 from ltlc.compiler import Compiled
 from ltlc.dataclass import dataclass
 from ltlc.inputs.recordings.blocks import Array, Block, Places
-from ltlc.monitoring.columns.derived import derive
 from ltlc.monitoring.columns.margins import margins_of
 from ltlc.monitoring.columns.prepared import Prepared
+from ltlc.monitoring.columns.registers import Registers
 from ltlc.monitoring.columns.robustness import at_steps, still_possible
 from ltlc.monitoring.columns.series import Columns, Steps, UnsupportedError
 from ltlc.monitoring.columns.timeline import Timeline
 from ltlc.monitoring.columns.values import not_numbers
-from ltlc.runtime.sampling import Derived, Reading, Window
+from ltlc.monitoring.columns.views import View, views_of
+from ltlc.runtime.sampling import Reading, Window
 from ltlc.runtime.session import Session
 from ltlc.runtime.tracking import Track
 from ltlc.semantics.durations import Nanoseconds
@@ -27,6 +28,9 @@ from ltlc.semantics.encodings import EPISODE
 from ltlc.semantics.robustness import FALSE, TRUE
 
 Run = tuple[Timeline, Mapping[str, Array], Mapping[str, Nanoseconds]]
+
+NOTHING = Block(np.empty(0, np.int64), {}, {})
+"""No rows."""
 
 PIECE = 1 << 14
 """So many margins are looked through at a time."""
@@ -72,27 +76,36 @@ class _Gathered:
     def __init__(self, compiled: Compiled, prepared: Prepared, track: Track, window: Window | None) -> None:
         self._of = of = compiled.specification
         self._prepared = prepared
-        self._property = track.property
+        self._track = track
         self._window = window
         self._reason = _unmeasured(compiled)
         self._times: list[Places] = []
         self._margins: dict[str, list[Array]] = {atom.name: [] for atom in of.atoms}
+        self._registers: Registers | None = None
+        if of.openings() and not self._reason:
+            try:
+                self._registers = Registers(of, prepared)
+            except UnsupportedError as error:
+                self._reason = str(error)
         self._heard = {news: of.arrival(news).signal.name for news in of.messages()}
         self._since: dict[str, Nanoseconds] = {}
 
-    def take(self, columns: Columns, is_first: bool) -> None:
-        """Gather those of a block, which may be the first."""
+    def take(self, view: View, session: Session) -> None:
+        """Gather those of a block, of which the property sees `view`."""
         if self._reason or self._window is None:
             return
-        also = [np.zeros(1, np.int64)] if is_first and self._property.from_session else []
         try:
-            steps = columns.steps(self._window.inputs, self._window.topics, also, self._property.excused)
+            steps = view.steps(session, self._track, self._window)
             if not self._times:
                 self._hear(steps)
             if len(steps):
                 self._add(steps)
         except UnsupportedError as error:
             self._reason = str(error)
+
+    def refuse(self, reason: str) -> None:
+        """They cannot be gathered."""
+        self._reason = self._reason or reason
 
     def _hear(self, steps: Steps) -> None:
         """Messages come before the first of `steps`, from which ages count."""
@@ -101,35 +114,44 @@ class _Gathered:
         self._since |= {news: int(steps.columns.times[row]) for news, row in last.items() if row is not None}
 
     def _add(self, steps: Steps) -> None:
-        mask = not_numbers(self._prepared.guards, steps)
-        if mask is not None and self._heard:
-            raise UnsupportedError("messages that make no step, from which ages count")
-        valid = slice(None) if mask is None else ~mask
-        found = [margins_of(atom.condition, steps)[valid] for atom in self._of.atoms]
-        self._times.append(steps.times[valid])
-        for parts, margins in zip(self._margins.values(), found, strict=True):
-            parts.append(margins)
+        parts = [(slice(None), steps)] if self._registers is None else self._registers.given(steps)
+        for part, given in parts:
+            mask, times = not_numbers(self._prepared.guards, given), steps.times[part]
+            if mask is not None and self._heard:
+                raise UnsupportedError("messages that make no step, from which ages count")
+            valid = slice(None) if mask is None else ~mask
+            self._times.append(times[valid])
+            for parts_of, atom in zip(self._margins.values(), self._of.atoms, strict=True):
+                parts_of.append(margins_of(atom.condition, given)[valid])
 
     def curve(self, began: Nanoseconds, end: Nanoseconds) -> Curve:
         """What they come to in a run up to `end`, in a session that `began` then."""
         if self._reason or not (run := self._run(began, end)):
             return Curve(reason=self._reason)
         try:
+            self._require_registers(end)
             found = at_steps(self._of.property, *run)
         except UnsupportedError as error:
             return Curve(reason=str(error))
         line, margins, _ = run
         whole = np.require(found, requirements=("C", "W"))
-        return Curve(line.times, whole, decided=_first_with(abs(float(found[0])), margins, line.times))
+        decided = _first_with(abs(float(found[0])), margins, line.times)
+        return Curve(line.times, whole, decided=decided and (decided[0], self._of.as_written(decided[1])))
 
     def band(self, began: Nanoseconds, end: Nanoseconds) -> Band:
         """What they can still come to in a run that has got to `end`."""
         if self._reason or not (run := self._run(began, end)):
             return Band(reason=self._reason)
         try:
+            self._require_registers(end)
             return Band(*still_possible(self._of.property, *run))
         except UnsupportedError as error:
             return Band(reason=str(error))
+
+    def _require_registers(self, end: Nanoseconds) -> None:
+        """The values at openings are known in a run up to `end`. Raises UnsupportedError."""
+        if self._registers is not None and not self._registers.are_known(end):
+            raise UnsupportedError("time opens or closes a scope, at whose opening a value is read, between two steps")
 
     def _run(self, began: Nanoseconds, end: Nanoseconds) -> Run | None:
         """The run up to `end`, its margins, and since when ages count; None before the first step."""
@@ -163,9 +185,7 @@ def _unmeasured(compiled: Compiled) -> str:
         return f"the encoding `{compiled.encoding.name}`"
     if of.slicing is not None:
         return "`each`: every id or message has a run of its own"
-    if of.openings():
-        return "values at an opening"
-    return "a count" if of.counts() else ""
+    return ""
 
 
 class Measuring:
@@ -176,7 +196,6 @@ class Measuring:
         self._session = session
         self._began: Nanoseconds | None = None
         self._readings = [signal for signal in session.plan.signals if isinstance(signal, Reading)]
-        self._derived = [signal for signal in session.plan.signals if isinstance(signal, Derived)]
         self._definitions = {name: each for of in prepared for name, each in of.definitions.items()}
         windows = {id(track): window for track, window in session.stepped}
         self._gathered = {
@@ -186,19 +205,31 @@ class Measuring:
 
     def take(self, block: Block) -> None:
         """Gather those of the rows of `block`, which the session takes next."""
-        if not len(block.times) or self._session.paces is not None:
+        if len(block.times):
+            self._take(block, int(block.times[-1]))
+            self._began = int(block.times[0]) if self._began is None else self._began
+
+    def finish(self, end: Nanoseconds) -> None:
+        """Gather those of the ticks up to `end`, which the session takes next."""
+        if self._session.paces is not None and self._began is not None:
+            self._take(NOTHING, min(end, self._session.end) + 1)
+
+    def _take(self, block: Block, before: Nanoseconds) -> None:
+        rows = Columns(block, self._session.sampler, self._readings)
+        try:
+            views = views_of(self._session, rows, before)
+        except UnsupportedError as error:
+            for gathered in self._gathered.values():
+                gathered.refuse(str(error))
             return
-        columns = Columns(block, self._session.sampler, self._readings)
-        derive(columns, self._derived, self._session.sampler, self._definitions)
-        for gathered in self._gathered.values():
-            gathered.take(columns, self._began is None)
-        self._began = int(block.times[0]) if self._began is None else self._began
-        columns.release()
+        for view in views:
+            view.derive(self._session, self._definitions)
+            for track in view.tracks:
+                self._gathered[track.property.label].take(view, self._session)
+            view.columns.release()
 
     def curves(self, end: Nanoseconds | None) -> dict[str, Curve]:
         """Those of all properties by label, in a run up to `end`; None if nothing has come."""
-        if self._session.paces is not None:
-            return dict.fromkeys(self._gathered, Curve(reason="ticks"))
         if end is None or self._began is None:
             return dict.fromkeys(self._gathered, Curve())
         until = min(end, self._session.end)
@@ -206,7 +237,5 @@ class Measuring:
 
     def bands(self, end: Nanoseconds) -> dict[str, Band]:
         """What is still possible of all properties by label, in a run that has got to `end`, and is not over."""
-        if self._session.paces is not None:
-            return dict.fromkeys(self._gathered, Band(reason="ticks"))
         began, until = end if self._began is None else self._began, min(end, self._session.end)
         return {label: gathered.band(began, until) for label, gathered in self._gathered.items()}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import reduce
 
 import numpy as np
 
@@ -10,12 +11,13 @@ from ltlc.inputs.recordings.blocks import Array, Places
 from ltlc.monitoring.columns.bits import union
 from ltlc.monitoring.columns.extremes import Clamps, backwards, extremes_from, extremes_of_windows, over_windows
 from ltlc.monitoring.columns.margins import combined
+from ltlc.monitoring.columns.ranks import nth_greatest
 from ltlc.monitoring.columns.timeline import Pieces, Timeline, least, negated, pieces_at, together
 from ltlc.semantics import ltl
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.robustness import FALSE, TRUE, margin
-from ltlc.semantics.timed_atoms import Age, Historically, Late, News, Occurred, Once, Previously, Since
+from ltlc.semantics.timed_atoms import Age, Historically, Late, News, Occurred, Once, Previously, Since, news_of
 
 
 class Predicates:
@@ -64,7 +66,9 @@ class Predicates:
                 return self._news(self._margins[name])
             case Age(_, news, most):
                 return self._age(news.name, most)
-            case Occurred() | Late():
+            case Occurred():
+                return self._occurred(atom)
+            case Late():
                 raise TypeError(f"not a margin: {atom!r}")
             case _:
                 return Pieces(self._line.steps, self._margins[atom.name])
@@ -84,6 +88,25 @@ class Predicates:
         starts = line.within(union([np.zeros(1, np.int64), arrivals, late]))
         last = np.insert(times, 0, since).take(arrivals.searchsorted(starts, "right"))
         return Pieces(starts, np.where(line.time(starts) - last <= most, TRUE, FALSE))
+
+    def _occurred(self, of: Occurred) -> Pieces:
+        """As often as it is counted so far, or in the last `within`."""
+        line, operand = self._line, self.of(of.operand)
+        occurs = operand.at(line.steps)
+        if of.begins:
+            occurs = np.append(occurs[:1], np.minimum(occurs[1:], -operand.at(line.steps[1:] - 1)))
+        else:
+            occurs = np.minimum(occurs, reduce(np.maximum, [self._margins[n.name] for n in news_of(of.operand)]))
+        if of.within is None:
+            return Pieces(
+                line.steps, nth_greatest(of.times, occurs, np.zeros_like(line.steps), np.arange(len(occurs)) + 1)
+            )
+        duration = line.clipped(of.within)
+        starts = together(line.steps, line.within(line.first_at(line.times + duration + 1)))
+        firsts = line.times.searchsorted(line.time(starts) - duration)
+        found = nth_greatest(of.times, occurs, firsts, pieces_at(line.steps, starts) + 1)
+        is_presumed = of.presumed & (firsts == 0)
+        return Pieces(starts, np.where(is_presumed, TRUE, found))
 
     def _historically(self, operand: Pieces) -> Pieces:
         """At all instants so far."""

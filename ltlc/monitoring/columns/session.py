@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import field
 from time import perf_counter_ns
 
@@ -13,22 +13,22 @@ from ltlc.inputs.recordings.blocks import Block, Ragged
 from ltlc.monitoring.columns.afterwards import Afterwards
 from ltlc.monitoring.columns.atoms import Compared, prepare
 from ltlc.monitoring.columns.bits import unpack
-from ltlc.monitoring.columns.derived import derive
 from ltlc.monitoring.columns.leaps import walk_and_leap
 from ltlc.monitoring.columns.others import Others
 from ltlc.monitoring.columns.prepared import Prepared
-from ltlc.monitoring.columns.series import Columns, Rows, Steps, UnsupportedError
+from ltlc.monitoring.columns.series import Columns, Steps, UnsupportedError
 from ltlc.monitoring.columns.slices import BySlices, refusal
-from ltlc.monitoring.columns.ticks import MOST, Seen, block_of, times_of
+from ltlc.monitoring.columns.ticks import Seen
 from ltlc.monitoring.columns.tracks import Forward, Stretch, count_invalid, has_ages, stretch, take_together
+from ltlc.monitoring.columns.views import View, views_of
 from ltlc.monitoring.columns.walk import hear, walk
 from ltlc.monitoring.later import is_followed, later_of, letters_of
 from ltlc.runtime.properties import MonitoredProperty
 from ltlc.runtime.rows import ByRows
-from ltlc.runtime.sampling import Derived, Reading, Window
+from ltlc.runtime.sampling import Reading, Window
 from ltlc.runtime.session import Session
 from ltlc.runtime.slice_steps import Slices
-from ltlc.runtime.ticks import Pace, Paces, Waiting
+from ltlc.runtime.ticks import Pace, Paces
 from ltlc.runtime.tracking import Track
 
 FIRST = 256
@@ -65,20 +65,6 @@ class Way:
     def count(self, reason: str) -> None:
         """A block more was judged by rows, for this reason."""
         self.because[reason] = self.because.get(reason, 0) + 1
-
-
-@dataclass(frozen=True)
-class View:
-    """What some properties see of a block: its rows, or the ticks of `pace`, which begin for those in `starting`."""
-
-    columns: Columns
-    ways: Sequence[Way]
-    pace: Pace | None = None
-    starting: Sequence[Waiting] = ()
-
-    def has(self, topics: frozenset[str]) -> bool:
-        """Whether it has what is read from `topics`."""
-        return self.pace is None or topics <= self.pace.topics.union(*(read for _, read in self.starting))
 
 
 class ByBlocks:
@@ -164,21 +150,21 @@ class ByBlocks:
         if self._why:
             self._by_rows(block, self.ways, self._why)
             return
-        rows, paces = Columns(block, self._session.sampler, self._readings), self._session.paces
+        rows = Columns(block, self._session.sampler, self._readings)
         try:
-            views = [View(rows, self._whole)] if paces is None else self._at_ticks(rows, paces)
+            views = views_of(self._session, rows, int(block.times[-1]))
         except UnsupportedError as error:
             self._by_rows(block, self.ways, str(error))
             return
         found: list[tuple[Way, Steps]] = []
         for view in views:
-            self._derive(view)
+            view.derive(self._session, self._definitions)
             by_reads: dict[int, Steps | UnsupportedError] = {}
-            steps = ((way, self._steps(way, view.columns, by_reads)) for way in view.ways)
+            steps = ((way, self._steps(way, view, by_reads)) for way in self._seeing(view))
             found += [(way, of) for way, of in steps if of is not None]
         self._prepare(found)
         taken = self._by_columns(found, rows)
-        slow = [way for view in views for way in view.ways if id(way) not in taken]
+        slow = [way for view in views for way in self._seeing(view) if id(way) not in taken]
         self._wait(views, rows)
         slow += [way for way in self._sliced if not self._take_slices(way, block)]
         if slow:
@@ -188,67 +174,34 @@ class ByBlocks:
         for view in views:
             view.columns.release()
 
-    def _at_ticks(self, rows: Columns, paces: Paces) -> list[View]:
-        """What the ticks before the last row see, for each time at which some begin. Raises UnsupportedError."""
-        starting: dict[int, list[Waiting]] = {}
-        for track, topics in paces.waiting:
-            first = 0 if track.property.from_session and self._session.began is None else _first_row(rows, topics)
-            if first is not None:
-                starting.setdefault(int(rows.times[first]), []).append((track, topics))
-        views = []
-        for pace in paces.begun:
-            more = [] if pace.ticks.count else starting.pop(pace.ticks.start, [])
-            views.append(self._view(pace, more, rows))
-        return [*views, *(self._view(paces.new(start), more, rows) for start, more in sorted(starting.items()))]
-
-    def _view(self, pace: Pace, starting: Sequence[Waiting], rows: Columns) -> View:
-        """What the ticks of `pace`, which those of `starting` join, see of the rows. Raises UnsupportedError."""
-        end = int(rows.times[-1])
-        if pace.ticks.before(end) > max(MOST, rows.count):
-            raise UnsupportedError("there are far more ticks than rows")
-        topics = pace.topics.union(*(read for _, read in starting))
-        block = block_of(rows, times_of(pace.ticks, end), pace.latest, {topic: topic in pace.heard for topic in topics})
-        readings = [reading for reading in self._readings if reading.topic in topics]
-        columns = Columns(block, pace.sampler, readings, are_ticks=True)
-        members = {id(track) for track, _ in (*pace.stepped, *starting)}
-        return View(columns, [way for way in self._whole if id(way.track) in members], pace, starting)
+    def _seeing(self, view: View) -> list[Way]:
+        """The properties that see `view`."""
+        tracks = {id(track) for track in view.tracks}
+        return [way for way in self._whole if id(way.track) in tracks]
 
     def _wait(self, views: Sequence[View], rows: Columns) -> None:
         """What has no ticks yet waits for them."""
-        ticking = {id(way) for view in views for way in view.ways}
+        ticking = {id(way) for view in views for way in self._seeing(view)}
         for way in self._whole:
             if id(way) not in ticking and way.track.property.timed and self._session.began is None:
                 way.track.begin(int(rows.times[0]))
 
-    def _derive(self, view: View) -> None:
-        """Compute the signals that are computed from others."""
-        sampler = self._session.sampler
-        signals = [s for s in self._session.plan.signals if isinstance(s, Derived) and view.has(sampler.topics[s.name])]
-        derive(view.columns, signals, sampler, self._definitions)
-
-    def _steps(self, way: Way, columns: Columns, by_reads: dict[int, Steps | UnsupportedError]) -> Steps | None:
+    def _steps(self, way: Way, view: View, by_reads: dict[int, Steps | UnsupportedError]) -> Steps | None:
         """The steps of a property; None, with the reason kept, if rows have to do."""
         if way.of.counts and way.is_stepped:
             way.count("it counts, and is stepped")
             return None
         if way.reads not in by_reads:
-            by_reads[way.reads] = self._steps_of(way, columns)
+            by_reads[way.reads] = self._steps_of(way, view)
         found = by_reads[way.reads]
         if isinstance(found, Steps):
             return found
         way.count(str(found))
         return None
 
-    def _steps_of(self, way: Way, columns: Columns) -> Steps | UnsupportedError:
-        also: list[Rows] = []
-        if self._session.paces is not None and has_ages(way.track):
-            return UnsupportedError("messages between ticks, from which ages count")
-        if self._session.paces is not None:
-            also += [None] if way.window.topics or way.track.property.from_session else []
-        elif way.track.property.from_session and self._session.began is None:
-            also += [np.zeros(1, np.int64)]
+    def _steps_of(self, way: Way, view: View) -> Steps | UnsupportedError:
         try:
-            return columns.steps(way.window.inputs, way.window.topics, also, way.track.property.excused)
+            return view.steps(self._session, way.track, way.window)
         except UnsupportedError as error:
             return error
 
@@ -406,9 +359,3 @@ def _reads(property_: MonitoredProperty) -> object:
     """What decides which steps a property has."""
     excused = frozenset((property_.inputs[each.place], each.instead) for each in property_.excused)
     return frozenset(property_.inputs), property_.from_session, excused
-
-
-def _first_row(rows: Columns, topics: Iterable[str]) -> int | None:
-    """The first of the rows with a message on one of `topics`."""
-    found = (rows.messages(topic) for topic in topics)
-    return min((int(rows.listed(of)[0]) for of in found if rows.number_of(of)), default=None)

@@ -454,6 +454,8 @@ class Judge:
                 break
         end = session.time if part.until is None else part.until
         if end is not None:
+            if measuring is not None:
+                measuring.finish(end)
             ByRows(by_blocks.session).advance(end)
             for track in session.tracks:
                 track.hold(min(end, session.end))
