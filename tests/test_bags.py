@@ -676,6 +676,27 @@ def test_messages_without_a_stamp_are_left_out_and_told(tmp_path: Path) -> None:
     ]
 
 
+def simulated(pace: float) -> Iterator[Sent]:
+    """Ten seconds of recording, with a `/clock` of that pace, and odometry."""
+    for k in range(101):
+        sec, nanosec = divmod(round(k * SECOND / 10 * pace), SECOND)
+        message = made("rosgraph_msgs/msg/Clock", clock__sec=sec, clock__nanosec=nanosec)
+        yield Sent("/clock", "rosgraph_msgs/msg/Clock", START + k * SECOND // 10, message)
+        yield odometry(START + k * SECOND // 10)
+
+
+@pytest.mark.parametrize("form", ["sqlite3", "sqlite3 by message", "mcap zstd", "ros1"])
+@pytest.mark.parametrize(("pace", "is_reported"), [(0.5, True), (0.98, True), (0.995, False), (1, False), (10, True)])
+def test_a_simulation_at_another_pace_than_its_recording_is_reported(
+    tmp_path: Path, form: str, pace: float, is_reported: bool
+) -> None:
+    path = FORMS[form](tmp_path, list(simulated(pace)))
+    found = [each.message for each in judged(path).diagnostics if each.code == "LTL817"]
+    passed = f"by `/clock` {pace * 10:g} s passed while 10 s were recorded: times are those of recording"
+    assert found == [passed] * is_reported
+    assert not [each for each in judged(path, stamp=Stamp.HEADER).diagnostics if each.code == "LTL817"]
+
+
 def test_a_time_outside_the_recording_is_an_error(tmp_path: Path) -> None:
     path = rosbag2(tmp_path / "bag", regular(5))
     assert "ends before the time of `--from`" in the_error(path, since=START + SECOND)[1]

@@ -183,6 +183,7 @@ CODES: dict[str, Code] = {
     "LTL814": Code("message-times", "Messages were recorded out of order, or at the same time", NOTE),
     "LTL815": Code("header-stamps", "Messages have no time in a header", WARNING),
     "LTL816": Code("from-before", "The time of `--from` is before the recording", WARNING),
+    "LTL817": Code("other-pace", "A simulation was recorded by another clock than its own", NOTE),
     "LTL818": Code("definitions", "Which definitions are used to read messages", NOTE),
     "LTL819": Code("dropouts", "A flight log lacks messages", WARNING),
     "LTL705": Code("not-certified", "The monitor could not be certified"),

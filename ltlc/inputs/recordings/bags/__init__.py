@@ -21,6 +21,7 @@ from ltlc.inputs.recordings.bags.merging import Merger, Rows, change_of_clocks, 
 from ltlc.inputs.recordings.bags.messages import LATEST, Batch, Messages, Storage, Topic
 from ltlc.inputs.recordings.bags.plan import Plan, absolute, of_all_files
 from ltlc.inputs.recordings.bags.scalars import MisfitError
+from ltlc.inputs.recordings.bags.simulated import other_pace
 from ltlc.inputs.recordings.blocks import Block
 from ltlc.inputs.recordings.fence import fenced
 from ltlc.inputs.recordings.reading import ReadOptions, Stamp
@@ -120,7 +121,9 @@ class BagRecording:
                 message = f"the messages on `{topic}` have no header: the time of recording is used"
                 found.append(self._remark("LTL815", message, "judge by the time of recording: `--stamp log`"))
             if reader.unstamped:
-                message = f"{reader.unstamped} messages on `{topic}` were skipped: the time in their headers is 0"
+                were, their = ("was", "its header") if reader.unstamped == 1 else ("were", "their headers")
+                skipped = f"{counted(reader.unstamped, 'message')} on `{topic}` {were} skipped"
+                message = f"{skipped}: the time in {their} is 0"
                 found.append(self._remark("LTL815", message, "judge by the time of recording: `--stamp log`"))
         return [*found, *self._about_times()]
 
@@ -137,6 +140,15 @@ class BagRecording:
         if together:
             message = f"{', '.join(together)} came at the same time as the previous one: each is a step"
             yield self._remark("LTL814", message, "")
+        storages, spans = list(self._storages.values()), [span for span in self._spans if span is not None]
+        first, last = storages[0], storages[-1]
+        if spans and first is not None and last is not None and self._reading.stamp is Stamp.LOG:
+            message = other_pace(first, last, min(begin for begin, _ in spans), max(end for _, end in spans))
+            if message:
+                help = (
+                    "`--stamp header` takes the times in headers; `ros2 bag record --use-sim-time` records by `/clock`"
+                )
+                yield self._remark("LTL817", message, help)
 
     def _about_definitions(self) -> Iterator[Diagnostic]:
         """Topics that are read by definitions that are not the recording's, and fields that others define otherwise."""
