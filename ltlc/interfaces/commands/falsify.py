@@ -24,7 +24,7 @@ from ltlc.falsification.falsify import Falsification, Watch, falsify
 from ltlc.falsification.parameters import space_of
 from ltlc.falsification.simulation import Outcome, Simulated, SimulationError, is_violated, whole
 from ltlc.inputs.recordings.digests import digests
-from ltlc.inputs.recordings.reading import ReadOptions
+from ltlc.interfaces.api.falsify import judge_of
 from ltlc.interfaces.api.prepare import Prepared
 from ltlc.interfaces.commands import arguments
 from ltlc.interfaces.commands.common import compile_file, report, unusable, unwritable, without_notes
@@ -125,7 +125,8 @@ def run(options: argparse.Namespace) -> int:
     with _environments(options.jobs) as environments, scratch() as folder, _ended_as_by_ctrl_c():
         if len(environments) < options.jobs:
             return unusable(f"--jobs {options.jobs}: only {len(environments)} ROS domains are free on this machine")
-        simulations = _Simulations(replace(command, environments=environments), _judge(prepared, options), folder)
+        judge = judge_of(prepared, map(str, options.msg_path))
+        simulations = _Simulations(replace(command, environments=environments), judge, folder)
         try:
             begin = examples(prepared.specification, ENCODINGS[options.encoding], space, Budget(*options.budget))
             found = falsify(simulations, space, options.simulations, options.seed, begin, _watch(options))
@@ -154,21 +155,6 @@ def _ended_as_by_ctrl_c() -> Iterator[None]:
         yield
     finally:
         signal.signal(signal.SIGTERM, before)
-
-
-def _judge(prepared: Prepared, options: argparse.Namespace) -> Judge:
-    reading = ReadOptions(message_paths=tuple(map(str, options.msg_path)))
-    remarks = prepared.late
-    return Judge(
-        prepared.compiled,
-        prepared.specification,
-        reading,
-        remarks=remarks,
-        hashed=False,
-        finds_all=False,
-        measures=True,
-        foresees=True,
-    )
 
 
 class _Simulations:
