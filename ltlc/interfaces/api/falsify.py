@@ -21,7 +21,7 @@ from ltlc.falsification.examples import examples
 from ltlc.falsification.falsify import Falsification
 from ltlc.falsification.falsify import falsify as search
 from ltlc.falsification.parameters import space_of
-from ltlc.falsification.simulation import Outcome, Simulated, SimulationError, is_violated, whole
+from ltlc.falsification.simulation import Outcome, Simulated, SimulationError, violated_first, whole
 from ltlc.inputs.recordings import Recording, open_recording
 from ltlc.inputs.recordings.reading import ReadOptions
 from ltlc.interfaces.api.prepare import Prepared, Text, encoding_of, folders, prepare, read
@@ -180,7 +180,7 @@ class _Simulator:
             failure.__cause__ = error
             return failure
         found = whole(self._judge.judge(path))
-        if not isinstance(found, SimulationError) and is_violated(found):
+        if not isinstance(found, SimulationError) and violated_first(found) is not None:
             judge = replace(self._judge, open=self._opener, finds_all=True)
             self.runs[id(found)] = run_of(self._prepared, judge, path, found)
         return found
