@@ -228,6 +228,13 @@ def test_what_is_found_does_not_depend_on_jobs() -> None:
     assert found[0].run.document() == found[1].run.document()
 
 
+@pytest.mark.parametrize(("chosen", "left_out"), [("fast", ["high"]), ("fast[w]", ["fast[v]", "high"])])
+def test_the_label_of_a_forall_chooses_all_that_it_stands_for(chosen: str, left_out: list[str]) -> None:
+    text = f"{DECLARATIONS}fast: forall r in {{v, w}}: never r > 2\nhigh: never v > 9"
+    found = ltlc.falsify(text, lambda _: constant(v=0, w=0), ["gain=0..1"], simulations=1, properties=[chosen])
+    assert found.document()["not_searched"] == left_out
+
+
 def test_a_function_that_several_jobs_call_need_not_be_picklable_but_what_it_gives() -> None:
     lock: Any = Lock()
 

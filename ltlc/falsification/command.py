@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 import shlex
+import shutil
 import tempfile
 import time
 from collections import deque
@@ -60,6 +61,10 @@ class Command:
         begun = deque[_Begun]()
         try:
             while True:
+                if begun and not begun[0].process.is_running():
+                    first = begun.popleft()
+                    yield Left(first.assignment, first.folder, _recording(first))
+                    continue
                 free = jobs - {each.job for each in begun if each.process.is_running()}
                 while free and (assignment := next(waiting, None)) is not None:
                     with uninterrupted():
@@ -67,14 +72,11 @@ class Command:
                     free.remove(begun[-1].job)
                 if not begun:
                     return
-                if begun[0].process.is_running():
-                    time.sleep(EVERY_SECONDS)
-                else:
-                    first = begun.popleft()
-                    yield Left(first.assignment, first.folder, _recording(first))
+                time.sleep(EVERY_SECONDS)
         finally:
             for each in begun:
                 each.process.end()
+                shutil.rmtree(each.folder, ignore_errors=True)
 
     def _begin(self, assignment: Assignment, folder: Path, job: int) -> _Begun:
         (folder / PARAMETERS).write_text(json.dumps(assignment.document(), indent=2) + "\n", encoding="utf-8")

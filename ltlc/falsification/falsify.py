@@ -12,7 +12,7 @@ from ltlc.falsification.assignment import Assignment
 from ltlc.falsification.parameters import Space
 from ltlc.falsification.search import Losses, batches
 from ltlc.falsification.shrinking import shrink
-from ltlc.falsification.simulation import Outcome, Simulate, Simulated, SimulationError, is_violated
+from ltlc.falsification.simulation import Outcome, Simulate, Simulated, SimulationError, violated_first
 from ltlc.semantics.verdicts import Verdict
 
 MOST_KNOWN = 1000
@@ -149,13 +149,13 @@ class _Search:
         verdicts = {label: track.verdict for label, track in tracks.items()}
         self.unmeasured |= {label: curve.reason for label, curve in outcome.robustness.items() if curve.reason}
         margins = {
-            label: outcome.bands[label].high if label in outcome.bands else math.inf
+            label: outcome.bands[label].high + 0.0 if label in outcome.bands else math.inf  # 0, not -0
             for label, curve in outcome.robustness.items()
             if not curve.reason
         }
         untriggered = [label for label, track in tracks.items() if track.never_triggered]
         left_out = {label: next(iter(track.invalid_because)) for label, track in tracks.items() if track.invalid}
-        kept = outcome if is_violated(outcome) else None
+        kept = None if violated_first(outcome) is None else outcome
         return Simulated(number, assignment, "", verdicts, margins, untriggered, left_out, kept)
 
     def _of_all(self) -> Simulated | None:

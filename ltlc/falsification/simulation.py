@@ -51,10 +51,7 @@ class Simulated:
     @property
     def violated(self) -> Track | None:
         """The property that was violated first; None if none was."""
-        if self.session is None:
-            return None
-        found = [track for track in self.session.tracks if track.verdict is Verdict.VIOLATED]
-        return min(found, key=lambda track: track.decided_at.time if track.decided_at else 0)
+        return None if self.report is None else violated_first(self.report)
 
     @property
     def ended(self) -> float | None:
@@ -74,6 +71,8 @@ def whole(report: RunReport) -> Outcome:
     return report
 
 
-def is_violated(report: RunReport) -> bool:
-    """Whether a property is."""
-    return report.session is not None and any(track.verdict is Verdict.VIOLATED for track in report.session.tracks)
+def violated_first(report: RunReport) -> Track | None:
+    """The property that was violated first; None if none was."""
+    tracks = [] if report.session is None else report.session.tracks
+    found = [track for track in tracks if track.verdict is Verdict.VIOLATED]
+    return min(found, key=lambda track: track.decided_at.time if track.decided_at else 0, default=None)

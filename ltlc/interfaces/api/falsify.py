@@ -21,7 +21,7 @@ from ltlc.falsification.examples import examples
 from ltlc.falsification.falsify import Falsification
 from ltlc.falsification.falsify import falsify as search
 from ltlc.falsification.parameters import space_of
-from ltlc.falsification.simulation import Outcome, Simulated, SimulationError, is_violated, whole
+from ltlc.falsification.simulation import Outcome, Simulated, SimulationError, violated_first, whole
 from ltlc.inputs.recordings import Recording, open_recording
 from ltlc.inputs.recordings.reading import ReadOptions
 from ltlc.interfaces.api.prepare import Prepared, Text, encoding_of, folders, prepare, read
@@ -116,7 +116,7 @@ def falsify(
         raise UnusableInput((), str(error)) from None
     paths = folders(message_paths)
     prepared = prepare(read(specification), paths, encoding_of(encoding), budget or Budget()).only(properties)
-    simulator = _Simulator(prepared, ReadOptions(message_paths=tuple(paths)), simulate, jobs)
+    simulator = _Simulator(prepared, paths, simulate, jobs)
     try:
         begin = examples(prepared.specification, encoding_of(encoding), space, prepared.budget)
         made = search(simulator, space, simulations, seed, begin)
@@ -127,27 +127,32 @@ def falsify(
     return Falsified(made, prepared, simulator.runs)
 
 
+def judge_of(prepared: Prepared, message_paths: Iterable[str], open: Open = open_recording) -> Judge:
+    """What judges simulations: up to the first violation of each property, with margins of what can still come."""
+    return Judge(
+        prepared.compiled,
+        prepared.specification,
+        ReadOptions(message_paths=tuple(message_paths)),
+        open=open,
+        remarks=prepared.late,
+        finds_all=False,
+        measures=True,
+        foresees=True,
+    )
+
+
 class _Simulator:
     """Simulates by a function, some at a time in processes of their own, and judges; the runs that violate stay.
 
     One judge opens them all, since what it prepares takes longer than a small run.
     """
 
-    def __init__(self, prepared: Prepared, reading: ReadOptions, simulate: Simulate, jobs: int) -> None:
+    def __init__(self, prepared: Prepared, message_paths: Sequence[str], simulate: Simulate, jobs: int) -> None:
         self._prepared = prepared
         self._simulate = simulate
         self._jobs = jobs
         self._opener: Open = open_recording
-        self._judge = Judge(
-            prepared.compiled,
-            prepared.specification,
-            reading,
-            open=self._open,
-            remarks=prepared.late,
-            finds_all=False,
-            measures=True,
-            foresees=True,
-        )
+        self._judge = judge_of(prepared, message_paths, self._open)
         self.runs: dict[int, Run] = {}
         """By the identity of the report."""
 
@@ -175,7 +180,7 @@ class _Simulator:
             failure.__cause__ = error
             return failure
         found = whole(self._judge.judge(path))
-        if not isinstance(found, SimulationError) and is_violated(found):
+        if not isinstance(found, SimulationError) and violated_first(found) is not None:
             judge = replace(self._judge, open=self._opener, finds_all=True)
             self.runs[id(found)] = run_of(self._prepared, judge, path, found)
         return found

@@ -51,14 +51,16 @@ class Prepared:
     def only(self, labels: Sequence[str]) -> Prepared:
         """The same with the properties called so only; with all of them, if there are no `labels`.
 
-        Raises UnusableInput for a label that no property has.
+        That of a `forall` is the label of all that it stands for. Raises UnusableInput for one that no property has.
         """
         known = [each.label for each in self.specification.properties]
+        chosen = set() if labels else set(known)
         for label in labels:
-            if label not in known:
+            meant = {each for each in known if label in (each, each.partition("[")[0])}
+            if not meant:
                 hint = did_you_mean(label, known) or f"there are {', '.join(known)}"
                 raise UnusableInput((), f"there is no property `{label}`: {hint}")
-        chosen = set(labels or known)
+            chosen |= meant
         properties = tuple(each for each in self.specification.properties if each.label in chosen)
         return replace(
             self,

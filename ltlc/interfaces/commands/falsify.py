@@ -22,14 +22,15 @@ from ltlc.falsification.command import Command, command_of
 from ltlc.falsification.examples import examples
 from ltlc.falsification.falsify import Falsification, Watch, falsify
 from ltlc.falsification.parameters import space_of
-from ltlc.falsification.simulation import Outcome, Simulated, SimulationError, is_violated, whole
+from ltlc.falsification.simulation import Outcome, Simulated, SimulationError, violated_first, whole
 from ltlc.inputs.recordings.digests import digests
-from ltlc.inputs.recordings.reading import ReadOptions
+from ltlc.interfaces.api.falsify import judge_of
 from ltlc.interfaces.api.prepare import Prepared
 from ltlc.interfaces.commands import arguments
 from ltlc.interfaces.commands.common import compile_file, report, unusable, unwritable, without_notes
-from ltlc.monitoring.judging.run import Judge
+from ltlc.monitoring.judging.run import Judge, RunReport
 from ltlc.semantics.encodings import ENCODINGS
+from ltlc.semantics.verdicts import Verdict
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -125,7 +126,8 @@ def run(options: argparse.Namespace) -> int:
     with _environments(options.jobs) as environments, scratch() as folder, _ended_as_by_ctrl_c():
         if len(environments) < options.jobs:
             return unusable(f"--jobs {options.jobs}: only {len(environments)} ROS domains are free on this machine")
-        simulations = _Simulations(replace(command, environments=environments), _judge(prepared, options), folder)
+        judge = judge_of(prepared, map(str, options.msg_path))
+        simulations = _Simulations(replace(command, environments=environments), judge, folder)
         try:
             begin = examples(prepared.specification, ENCODINGS[options.encoding], space, Budget(*options.budget))
             found = falsify(simulations, space, options.simulations, options.seed, begin, _watch(options))
@@ -156,37 +158,37 @@ def _ended_as_by_ctrl_c() -> Iterator[None]:
         signal.signal(signal.SIGTERM, before)
 
 
-def _judge(prepared: Prepared, options: argparse.Namespace) -> Judge:
-    reading = ReadOptions(message_paths=tuple(map(str, options.msg_path)))
-    remarks = prepared.late
-    return Judge(
-        prepared.compiled,
-        prepared.specification,
-        reading,
-        remarks=remarks,
-        hashed=False,
-        finds_all=False,
-        measures=True,
-        foresees=True,
-    )
-
-
 class _Simulations:
-    """Simulates by a command in a folder for each time, and judges; only folders with violations stay."""
+    """Simulates by a command in a folder for each time, and judges.
+
+    Of the folders only the last stays with a violation of the property that was violated first: what that is shrunk to.
+    """
 
     def __init__(self, command: Command, judge: Judge, folder: Path) -> None:
         self._command = command
         self._judge = judge
         self._folder = folder
         self._is_first = True
+        self._label: str | None = None
+        self._kept: Path | None = None
 
     def __call__(self, assignments: Iterable[Assignment]) -> Generator[tuple[Assignment, Outcome], None, None]:
         with closing(self._command.simulate(assignments, self._folder)) as left:
             for assignment, folder, recording in left:
                 outcome = recording if isinstance(recording, SimulationError) else self._judged(recording)
-                if isinstance(outcome, SimulationError) or not is_violated(outcome):
-                    shutil.rmtree(folder)
+                others: Path | None = folder
+                if not isinstance(outcome, SimulationError) and self._is_sought(outcome):
+                    others, self._kept = self._kept, folder
+                if others is not None:
+                    shutil.rmtree(others, ignore_errors=True)
                 yield assignment, outcome
+
+    def _is_sought(self, judged: RunReport) -> bool:
+        first = violated_first(judged)
+        if self._label is None and first is not None:
+            self._label = first.property.label
+        tracks = [] if judged.session is None else judged.session.tracks
+        return any(track.property.label == self._label and track.verdict is Verdict.VIOLATED for track in tracks)
 
     def _judged(self, recording: Path) -> Outcome:
         judged = self._judge.judge(recording)
