@@ -8,11 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import field, replace
+from functools import cached_property
 from typing import assert_never
 
 from ltlc.analysis.comparison.reference import shown
-from ltlc.analysis.comparison.relate import distinguishing_lasso, distinguishing_words
-from ltlc.automata.queries import implies
+from ltlc.analysis.comparison.relate import distinguishing_lasso
+from ltlc.automata.languages import Languages
 from ltlc.dataclass import dataclass
 from ltlc.importing import formulas as f
 from ltlc.semantics import ltl, properties, timed_atoms
@@ -205,12 +206,22 @@ class Core:
                 for _ in range(steps):
                     found = ltl.weak_next(found)
                 return found
+            case f.Previous(f.And(left, right), steps):
+                return ltl.And(self.of(f.Previous(left, steps)), self.of(f.Previous(right, steps)))
+            case f.Previous(f.Or(left, right), steps):
+                return ltl.Or(self.of(f.Previous(left, steps)), self.of(f.Previous(right, steps)))
+            case f.Previous(f.Not(operand), steps) if operand != f.TRUE:
+                began, held = self.of(f.Previous(f.TRUE, steps)), self.of(f.Previous(operand, steps))
+                return ltl.And(began, ltl.Not(held))
+            case f.Previous(f.Previous(operand, more), steps):
+                return self.of(f.Previous(operand, steps + more))
             case f.Previous(operand, steps):
                 return self._previous(self.of(operand), steps)
             case f.Until(left, right, start, stop):
                 return self._until(left, right, start, stop)
             case f.Since(left, right, start, stop):
-                return self._since(left, right, start, stop)
+                sooner = _sooner(formula) if _has_previous(right) else None
+                return self._since(left, right, start, stop) if sooner is None else self.of(f.Previous(sooner))
             case _:
                 assert_never(formula)
 
@@ -290,6 +301,40 @@ class Core:
         return self._known[key]
 
 
+def _sooner(formula: f.Formula) -> f.Formula | None:
+    """What holds at a position if `formula` does at the next one; None if that depends on the next one itself."""
+    match formula:
+        case f.Truth():
+            return formula
+        case f.Previous(operand, steps):
+            return operand if steps == 1 else f.Previous(operand, steps - 1)
+        case f.Not(operand):
+            inner = _sooner(operand)
+            return None if inner is None else f.Not(inner)
+        case f.And(left, right) | f.Or(left, right) | f.Since(left, right, _, _):
+            p, q = _sooner(left), _sooner(right)
+            return None if p is None or q is None else replace(formula, left=p, right=q)
+        case f.Atom() | f.Next() | f.Until():
+            return None
+        case _:
+            assert_never(formula)
+
+
+def _has_previous(formula: f.Formula) -> bool:
+    """Whether `formula` is false at the first position, as can be seen."""
+    match formula:
+        case f.Previous():
+            return True
+        case f.And(left, right):
+            return _has_previous(left) or _has_previous(right)
+        case f.Or(left, right):
+            return _has_previous(left) and _has_previous(right)
+        case f.Since(_, right, _, _):
+            return _has_previous(right)
+        case _:
+            return False
+
+
 def _same(left: ltl.Formula, right: ltl.Formula) -> ltl.Formula:
     return ltl.And(ltl.implies(left, right), ltl.implies(right, left))
 
@@ -330,36 +375,44 @@ def compare(formula: f.Formula, written: f.Formula, states: States, possible: Al
 
 
 class _Pair:
-    """A formula and the property that is written for it, in core LTL, and the letters that their runs have."""
+    """A formula and the property that is written for it, in core LTL, and the letters that their runs have.
+
+    Each formula is an automaton of its own, and so is each definition: of all together, it would be large.
+    """
 
     def __init__(self, formula: f.Formula, written: f.Formula, core: Core, possible: Alphabet) -> None:
         self.core = core
-        theirs, ours = core.of(formula), core.of(written)
-        known = ltl.conjunction(core.definitions)
-        self._theirs, self._ours = ltl.And(theirs, known), ltl.And(ours, known)
-        read = ltl.atoms(ltl.And(self._theirs, self._ours))
+        self._formulas = core.of(formula), core.of(written)
+        read = ltl.atoms(ltl.conjunction((*self._formulas, *core.definitions)))
         self._alphabet = Alphabet(read, tuple(group for group in possible.groups if set(group.atoms) <= set(read)))
         states = (*core.states.values(), *map(ltl.Atom, possible.atoms))
         self._plain = frozenset(name for state in states for name in ltl.atoms(state))
 
-    @property
+    @cached_property
     def is_equal(self) -> bool:
         """Whether no infinite run tells them apart."""
-        theirs, ours = self._theirs, self._ours
-        return implies(theirs, ours, self._alphabet) and implies(ours, theirs, self._alphabet)
+        space = Languages(self._alphabet)
+        theirs, ours = map(space.of, self._formulas)
+        known = [space.of(each) for each in self.core.definitions]
+        return space.implies([theirs, *known], ours) and space.implies([ours, *known], theirs)
 
     def on_infinite_runs(self) -> Shown:
         """Shortest infinite runs that tell them apart."""
-        pairs = ((self._theirs, self._ours), (self._ours, self._theirs))
-        found = (distinguishing_lasso(ltl.And(left, ltl.Not(right)), self._alphabet)[0] for left, right in pairs)
-        theirs, ours = (shown(self._told(run)) if run else "" for run in found)
-        return Shown(theirs, ours)
+        theirs, ours = self._formulas
+        known = ltl.conjunction(self.core.definitions)
+        pairs = ((theirs, ltl.Not(ours)), (ours, ltl.Not(theirs)))
+        found = (distinguishing_lasso(ltl.conjunction((known, *pair)), self._alphabet)[0] for pair in pairs)
+        return Shown(*(shown(self._told(run)) if run else "" for run in found))
 
     def on_finite_runs(self) -> Shown:
         """Shortest finite runs that tell them apart, if any do."""
-        words = distinguishing_words([self._theirs, self._ours], self._alphabet)
-        theirs, ours = (shown(self._told(word)) if word else "" for word in words)
-        return Shown(theirs, ours, finite=bool(theirs or ours))
+        space = Languages(self._alphabet, finite=True)
+        theirs, ours = self._formulas
+        known = [space.of(each) for each in self.core.definitions]
+        pairs = ((theirs, ltl.Not(ours)), (ours, ltl.Not(theirs)))
+        found = (space.shortest_word([*map(space.of, pair), *known]) for pair in pairs)
+        told = [shown(self._told(word)) if word else "" for word in found]
+        return Shown(*told, finite=any(told))
 
     def _told(self, run: Word | Lasso) -> Word | Lasso:
         """`run` with the atoms of the property only."""
