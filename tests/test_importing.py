@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import json
+from itertools import product
 from pathlib import Path
 
+import fretish_by_definition as fretish
 import pytest
+from effort import some_of
 
 from ltlc.base.limits import Budget
 from ltlc.base.source import Source, Span
@@ -116,6 +119,18 @@ def test_a_sentence_of_fret_is_shown_equal_to_the_formula_that_fret_has_for_it(
     assert said("fret", fret((sentence, formula))) == [expected]
 
 
+@pytest.mark.parametrize("timing", fretish.TIMINGS)
+def test_a_timing_of_fret_means_what_fret_publishes_in_each_scope_and_with_each_condition(timing: str) -> None:
+    number = list(fretish.TIMINGS).index(timing)
+    for scope, condition in some_of(product(fretish.SCOPES, fretish.CONDITIONS), number):
+        if timing == "after" and scope.startswith("only"):
+            continue  # takes longer to compare, and nobody is known to write it
+        parts = (scope, condition, timing)
+        (found,), _ = imported("fret", fret((fretish.sentence(*parts), fretish.formula(*parts))))
+        assert found.shown is not None, found
+        assert found.shown.is_equal, found
+
+
 def test_fret_excuses_what_is_open_at_the_end() -> None:
     (found,), text = imported("fret", fret(FRETISH["upon, within"][:2]))
     assert found.shown is not None
@@ -128,6 +143,21 @@ def test_types_of_fret_are_those_of_its_variables() -> None:
         "fret", fret(("The robot shall always satisfy n = k", "(LAST V (n = k))"), n="integer", k="integer")
     )
     assert "decl n /n std_msgs/Int64.data" in text
+
+
+def test_variables_of_fret_that_have_a_value_are_definitions() -> None:
+    document_ = json.loads(fret(("In landing the robot shall always satisfy mode = idle & speed < top", "")))
+    document_["variables"] = [
+        {"variable_name": "idle", "dataType": "integer", "idType": "Internal", "assignment": "3"},
+        {"variable_name": "top", "dataType": "double", "assignment": "2.5 * idle"},
+        {"variable_name": "landing", "dataType": "boolean", "modeRequirement": "gear and not (speed > 9.0)"},
+        {"variable_name": "speed", "dataType": "double", "assignment": "pre (speed) + 1.0"},
+    ]
+    text = json.dumps(document_)
+    assert said("fret", text) == ["always (landing implies mode == idle and speed < top)"]
+    _, specification = imported("fret", text)
+    assert "idle    = 3\ntop     = 2.5 * idle\nlanding = gear and not speed > 9.0\n" in specification
+    assert "decl speed /speed std_msgs/Float64.data\n" in specification
 
 
 def test_the_id_sentence_and_rationale_of_fret_are_those_of_the_property() -> None:

@@ -25,43 +25,42 @@ FIRST_EDGES = 16
 
 
 class Language:
-    """The infinite words of `formula`, and those that are not."""
+    """The infinite words of `formula`, or with `finite` its finite ones, and those that are not."""
 
-    def __init__(self, space: Languages, formula: Formula) -> None:
+    def __init__(self, space: Languages, formula: Formula, finite: bool) -> None:
         self.formula = formula
-        self._space = space
+        self._space, self._finite = space, finite
 
     @cached_property
     def words(self) -> Any:
         """An automaton of Spot's that accepts them."""
-        return self._space.automaton(self.formula)
+        return self._space.automaton(self.formula, self._finite)
 
     @cached_property
     def others(self) -> Any:
         """An automaton of Spot's that accepts all other words."""
-        return self._space.automaton(Not(self.formula))
+        return self._space.automaton(Not(self.formula), self._finite)
 
 
 class Languages:
     """Questions about formulas over the letters of one alphabet.
 
-    Automata read only the groups of atoms that their formula touches, so that large alphabets cost nothing. If they are
-    `finite`, formulas are judged on finite words, not empty, without timed atoms.
+    Automata read only the groups of atoms that their formula touches, so that large alphabets cost nothing.
     """
 
-    def __init__(self, alphabet: Alphabet, finite: bool = False) -> None:
+    def __init__(self, alphabet: Alphabet) -> None:
         # Atoms that constrain one another stand together: their diagrams are small in that order.
         grouped = [atom for group in alphabet.groups for atom in group.atoms]
         order = tuple(dict.fromkeys([*grouped, *alphabet.atoms]))
         diagrams = Diagrams()
         self._session = _SharedSession(Letters(order, diagrams, diagrams.true, runs_in_time(TRUE, order, diagrams)))
-        self._groups, self._finite = alphabet.groups, finite
+        self._groups = alphabet.groups
         self._group_of = {atom: number for number, group in enumerate(alphabet.groups) for atom in group.atoms}
         self._possible: dict[int, Any] = {}
 
-    def of(self, formula: Formula) -> Language:
-        """The words of `formula`; they are translated when they are first needed."""
-        return Language(self, formula)
+    def of(self, formula: Formula, finite: bool = False) -> Language:
+        """The words of `formula`, with `finite` the finite ones; they are translated when they are first needed."""
+        return Language(self, formula, finite)
 
     def compatible(self, languages: Sequence[Language]) -> bool:
         """Whether some word is in all of `languages`, and is a run in time."""
@@ -93,7 +92,7 @@ class Languages:
         return Lasso(tuple(map(self._letter, found.prefix)), tuple(map(self._letter, found.cycle)))
 
     def shortest_word(self, languages: Sequence[Language]) -> Word | None:
-        """A shortest finite word in all of `languages`; None if there is none."""
+        """A shortest word, not empty, that is in all finite `languages` and begins a word of each other one."""
         return self._session.shortest_word(reduce(spot.product, [language.words for language in languages]))
 
     def _have_a_run(self, automata: list[Any]) -> bool:
@@ -112,13 +111,13 @@ class Languages:
         runs = self._session.runs([automaton])
         return automaton if runs is None else spot.product(automaton, runs.whole())
 
-    def automaton(self, formula: Formula) -> Any:
+    def automaton(self, formula: Formula, finite: bool) -> Any:
         """An automaton of the words of `formula`."""
         self._session.learn(formula)
         possible = buddy.bddtrue
         for number in sorted({self._group_of[atom] for atom in atoms(formula) if atom in self._group_of}):
             possible &= self._valuations(number, self._groups[number])
-        return self._session.automaton(formula, possible, self._finite)
+        return self._session.automaton(formula, possible, finite)
 
     def _valuations(self, number: int, group: Group) -> Any:
         if number not in self._possible:

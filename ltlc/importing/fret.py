@@ -16,7 +16,8 @@ from ltlc.importing import fretish
 from ltlc.importing.names import Kind, Signals
 from ltlc.importing.operators import Form, Measure
 from ltlc.importing.requirement import Requirement, UnusableFileError
-from ltlc.importing.values import FormulaError
+from ltlc.importing.values import Choice, FormulaError, Structure, Value
+from ltlc.importing.writing import Reading, Writer
 
 FORM = Form(
     words={
@@ -38,6 +39,11 @@ FORM = Form(
     levels={"implies": 1, "iff": 2, "or": 3, "xor": 3, "and": 4, "until": 5, "release": 5, "since": 5},
     right=frozenset(("implies",)),
 )
+
+ASSIGNED = replace(FORM, words={"and": "and", "or": "or", "not": "not", "xor": "xor", "mod": "mod"})
+"""How the value of a variable is written, as Lustre has it."""
+
+_OVER_TIME = re.compile(r"->|\bpre\b|\bfby\b")
 
 KINDS = {
     "boolean": Kind.BOOLEAN,
@@ -66,18 +72,30 @@ def read(source: Source, signals: Signals, measure: Measure) -> list[Requirement
     if not isinstance(entries, list) or not all(isinstance(entry, Mapping) for entry in entries):
         raise UnusableFileError("FRET exports a list of requirements, or an object with `requirements`")
     for variable in variables if isinstance(variables, list) else ():
-        _declare(variable, signals)
+        _declare(variable, signals, measure)
     return [
         _requirement(entry, place, signals, measure) for entry, place in zip(entries, _places(source), strict=False)
     ]
 
 
-def _declare(variable: object, signals: Signals) -> None:
-    """Note of a variable whether it is a condition or a number; FRET says nothing of topics."""
-    if isinstance(variable, Mapping) and isinstance(name := variable.get("variable_name"), str):
-        kind = KINDS.get(str(variable.get("dataType")).lower())
-        if kind is not None:
-            signals.use(name, kind)
+def _declare(variable: object, signals: Signals, measure: Measure) -> None:
+    """Note of a variable whether it is a condition or a number, and what it stands for; FRET says nothing of topics."""
+    if not isinstance(variable, Mapping) or not isinstance(name := variable.get("variable_name"), str):
+        return
+    kind = KINDS.get(str(variable.get("dataType")).lower())
+    if kind is not None:
+        signals.use(name, kind)
+    text = str(variable.get("assignment") or variable.get("modeRequirement") or "")
+    if _OVER_TIME.search(text):
+        return
+    try:
+        value = fretish.Conditions(text, ASSIGNED, signals, measure).alone()
+    except FormulaError:
+        return  # it has no value, or one that cannot be said: it stays a signal
+    if isinstance(value, Structure | Choice):
+        return
+    signals.name(name)
+    signals.definitions[name] = value.text if isinstance(value, Value) else Writer(Reading(None), "").condition(value)
 
 
 def _places(source: Source) -> Iterator[Span | None]:

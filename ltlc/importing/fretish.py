@@ -68,7 +68,11 @@ def _ended(mode: f.Formula) -> f.Formula:
     return f.And(f.negated(mode), f.Previous(mode))
 
 
-_OPENINGS = {"": lambda mode: f.TRUE, "after": _ended, "onlyBefore": lambda mode: mode}
+_OPENINGS: Mapping[str, Callable[[f.Formula], f.Formula]] = {
+    "": lambda mode: f.TRUE,
+    "after": _ended,
+    "onlyBefore": lambda mode: mode,
+}
 """Where intervals begin that do not end."""
 
 
