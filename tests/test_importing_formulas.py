@@ -13,11 +13,12 @@ from ltlc.base.limits import Budget
 from ltlc.base.source import Source
 from ltlc.frontend.language import read, types_for
 from ltlc.importing import formulas as f
+from ltlc.importing.conditions import NotComparedError
 from ltlc.importing.conversion import convert
 from ltlc.importing.names import Kind, Signals
 from ltlc.importing.readings import over_signals, parting
 from ltlc.importing.requirement import Requirement
-from ltlc.importing.showing import NotComparedError, compare, of_property
+from ltlc.importing.showing import compare, of_property
 from ltlc.importing.writing import Reading, UnsayableError, Writer
 from ltlc.semantics.alphabet import Alphabet
 

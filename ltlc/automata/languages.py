@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from functools import cached_property, reduce
@@ -10,35 +11,35 @@ from typing import Any
 
 from ltlc.automata.engine import buddy, spot
 from ltlc.automata.machine import Letters, Move, edges_in_time, runs_in_time
-from ltlc.automata.spot_translation import FAST, Session, add_edges
+from ltlc.automata.spot_translation import FAST, Session, add_edges, useful_states
 from ltlc.semantics.alphabet import Alphabet, Group
 from ltlc.semantics.diagrams import Diagrams
 from ltlc.semantics.ltl import TRUE, And, Atom, Formula, Not, Or, Truth, atoms, conjunction
 from ltlc.semantics.ordered_machine import OrderedMachine
 from ltlc.semantics.reset_machine import ResetMachine
 from ltlc.semantics.timed_atoms import TimedAtom, atoms_within
-from ltlc.semantics.words import Lasso, Letter
+from ltlc.semantics.words import Lasso, Letter, Word
 
 FIRST_EDGES = 16
 """So much of the runs in time is made before they are looked at."""
 
 
 class Language:
-    """The infinite words of `formula`, and those that are not."""
+    """The infinite words of `formula`, or with `finite` its finite ones, and those that are not."""
 
-    def __init__(self, space: Languages, formula: Formula) -> None:
+    def __init__(self, space: Languages, formula: Formula, finite: bool) -> None:
         self.formula = formula
-        self._space = space
+        self._space, self._finite = space, finite
 
     @cached_property
     def words(self) -> Any:
         """An automaton of Spot's that accepts them."""
-        return self._space.automaton(self.formula)
+        return self._space.automaton(self.formula, self._finite)
 
     @cached_property
     def others(self) -> Any:
         """An automaton of Spot's that accepts all other words."""
-        return self._space.automaton(Not(self.formula))
+        return self._space.automaton(Not(self.formula), self._finite)
 
 
 class Languages:
@@ -57,9 +58,9 @@ class Languages:
         self._group_of = {atom: number for number, group in enumerate(alphabet.groups) for atom in group.atoms}
         self._possible: dict[int, Any] = {}
 
-    def of(self, formula: Formula) -> Language:
-        """The words of `formula`; they are translated when they are first needed."""
-        return Language(self, formula)
+    def of(self, formula: Formula, finite: bool = False) -> Language:
+        """The words of `formula`, with `finite` the finite ones; they are translated when they are first needed."""
+        return Language(self, formula, finite)
 
     def compatible(self, languages: Sequence[Language]) -> bool:
         """Whether some word is in all of `languages`, and is a run in time."""
@@ -90,6 +91,10 @@ class Languages:
         found.simplify()
         return Lasso(tuple(map(self._letter, found.prefix)), tuple(map(self._letter, found.cycle)))
 
+    def shortest_word(self, languages: Sequence[Language]) -> Word | None:
+        """A shortest word, not empty, that is in all finite `languages` and begins a word of each other one."""
+        return self._session.shortest_word(reduce(spot.product, [language.words for language in languages]))
+
     def _have_a_run(self, automata: list[Any]) -> bool:
         """Whether some word that all of `automata` accept is a run in time."""
         runs = self._session.runs(automata)
@@ -106,13 +111,13 @@ class Languages:
         runs = self._session.runs([automaton])
         return automaton if runs is None else spot.product(automaton, runs.whole())
 
-    def automaton(self, formula: Formula) -> Any:
+    def automaton(self, formula: Formula, finite: bool) -> Any:
         """An automaton of the words of `formula`."""
         self._session.learn(formula)
         possible = buddy.bddtrue
         for number in sorted({self._group_of[atom] for atom in atoms(formula) if atom in self._group_of}):
             possible &= self._valuations(number, self._groups[number])
-        return self._session.automaton(formula, possible)
+        return self._session.automaton(formula, possible, finite)
 
     def _valuations(self, number: int, group: Group) -> Any:
         if number not in self._possible:
@@ -205,9 +210,29 @@ class _SharedSession(Session):
             case _:
                 raise TypeError(f"not a state predicate: {predicate!r}")
 
-    def automaton(self, formula: Formula, possible: Any) -> Any:
+    def automaton(self, formula: Formula, possible: Any, finite: bool) -> Any:
         """A generalised Büchi automaton of the words of `formula` whose letters are in `possible`."""
-        return self._restricted(self._run(self.to_spot(formula, finite=False), FAST), possible)
+        spot_formula = self.to_spot(formula, finite)
+        if finite:
+            spot_formula, possible = self.ending(spot_formula), possible | -self._alive
+        return self._restricted(self._run(spot_formula, FAST), possible)
+
+    def shortest_word(self, automaton: Any) -> Word | None:
+        """A shortest finite word that `automaton`, of `finite` words, accepts; None if there is none."""
+        ending = useful_states(self._restricted(automaton, -self._alive))
+        living = self._restricted(automaton, self._alive)
+        start = living.get_init_state_number()
+        words: dict[int, Word] = {start: ()}
+        waiting = deque([start])
+        while waiting:
+            state = waiting.popleft()
+            for edge in living.out(state):
+                if edge.dst in ending:
+                    return (*words[state], self.letter(edge.cond))
+                if edge.dst not in words:
+                    words[edge.dst] = (*words[state], self.letter(edge.cond))
+                    waiting.append(edge.dst)
+        return None
 
     def valuations(self, group: Group) -> Any:
         """The letters in which the atoms of `group` have one of its valuations."""
@@ -228,6 +253,6 @@ class _SharedSession(Session):
             if buddy.bdd_low(guard) != buddy.bddfalse:
                 guard = buddy.bdd_low(guard)
                 continue
-            held.append(names[buddy.bdd_var(guard)])
+            held.append(names.get(buddy.bdd_var(guard), ""))
             guard = buddy.bdd_high(guard)
-        return frozenset(held)
+        return frozenset(filter(None, held))

@@ -91,24 +91,27 @@ class Session:
         A finite word is read as an infinite one in which `alive` holds up to its end and never again (De Giacomo and
         Vardi 2013): it is accepted where the rest can be accepted with `alive` false forever.
         """
-        alive, dead = spot.formula.ap("alive"), spot.formula.Not(spot.formula.ap("alive"))
-        frame = spot.formula.And([alive, spot.formula.U(alive, spot.formula.G(dead))])
-        spot_formula = spot.formula.And([frame, self.to_spot(formula, finite=True)])
+        spot_formula = self.ending(self.to_spot(formula, finite=True))
 
         def words(effort: tuple[Any, Any], most: int | None) -> Machine:
             automaton = self._run(spot_formula, effort)
-            ending = _useful_states(self._restricted(automaton, -self._alive))
+            ending = useful_states(self._restricted(automaton, -self._alive))
             living = self._useful(self._restricted(automaton, self._alive & self._possible), everything=True)
             return determinise(self.letters, living, lambda states: not ending.isdisjoint(states), most)
 
         return _determinised(words)
+
+    def ending(self, spot_formula: Any) -> Any:
+        """`spot_formula` on words in which `alive` holds at first, up to some step and never again."""
+        alive, dead = spot.formula.ap("alive"), spot.formula.Not(spot.formula.ap("alive"))
+        return spot.formula.And([alive, spot.formula.U(alive, spot.formula.G(dead)), spot_formula])
 
     def is_satisfiable(self, spot_formula: Any, clocks: int = 0) -> bool:
         """Whether a formula of Spot's is satisfied by some run in time, whose clocks are in the state `clocks`."""
         if self._time is not None:
             self._time.set_init_state(clocks)
         automaton = self._in_time(self._run(spot_formula, FAST))
-        return automaton.get_init_state_number() in _useful_states(automaton)
+        return automaton.get_init_state_number() in useful_states(automaton)
 
     def to_spot(self, formula: Formula, finite: bool) -> Any:
         """`formula` as Spot's; if `finite`, so that it is judged on the steps with `alive`."""
@@ -191,7 +194,7 @@ class Session:
 
     def _useful(self, automaton: Any, everything: bool = False) -> Automaton:
         """`automaton` over our diagrams, of `everything` or of the states from which an infinite word is accepted."""
-        states = set(range(automaton.num_states())) if everything else _useful_states(automaton)
+        states = set(range(automaton.num_states())) if everything else useful_states(automaton)
         successors = [
             successor_sets(self.letters.diagrams, self._guards_to(states, automaton.out(state)))
             for state in range(automaton.num_states())
@@ -253,7 +256,7 @@ def _determinised(construction: Any) -> Machine:
         return minimise(construction(REDUCED, None))
 
 
-def _useful_states(automaton: Any) -> set[int]:
+def useful_states(automaton: Any) -> set[int]:
     """The states, reachable or not, from which some infinite word is accepted."""
     everywhere = spot.scc_info_options_ALL | spot.scc_info_options_PROCESS_UNREACHABLE_STATES
     components = spot.scc_info_with_options(automaton, everywhere)

@@ -12,10 +12,11 @@ from ltlc.base.source import Source
 from ltlc.dataclass import dataclass
 from ltlc.frontend.language import ReadText, read, types_for
 from ltlc.importing import formulas as f
+from ltlc.importing.conditions import NotComparedError
 from ltlc.importing.names import Signals
 from ltlc.importing.readings import Parting, parting
 from ltlc.importing.requirement import Requirement
-from ltlc.importing.showing import NotComparedError, Shown, compare, of_property
+from ltlc.importing.showing import Shown, compare, of_property
 from ltlc.importing.writing import Reading, UnsayableError, Writer
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.properties import predicates

@@ -11,7 +11,8 @@ from math import gcd
 from typing import NamedTuple
 
 from ltlc.importing import formulas as f
-from ltlc.importing.showing import NotComparedError, States, compare
+from ltlc.importing.conditions import NotComparedError, States
+from ltlc.importing.showing import compare
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.durations import Nanoseconds
 

@@ -6,15 +6,18 @@ then only equality can be shown. What the past has at a position is an atom with
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import field, replace
+from collections.abc import Iterator
+from dataclasses import replace
+from functools import cached_property
 from typing import assert_never
 
 from ltlc.analysis.comparison.reference import shown
-from ltlc.analysis.comparison.relate import distinguishing_lasso, distinguishing_words
-from ltlc.automata.queries import implies
+from ltlc.analysis.comparison.relate import distinguishing_lasso
+from ltlc.automata.languages import Language, Languages
 from ltlc.dataclass import dataclass
 from ltlc.importing import formulas as f
+from ltlc.importing.conditions import Conditions, NotComparedError, States
+from ltlc.importing.core import Core
 from ltlc.semantics import ltl, properties, timed_atoms
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.durations import Nanoseconds
@@ -22,16 +25,6 @@ from ltlc.semantics.encodings import EPISODE, encode
 from ltlc.semantics.words import Lasso, Word
 from ltlc.specification.expressions import Boolean, Current, IsTrue, Past, When
 from ltlc.specification.specification import PropertySpecification
-
-MOST_STEPS = 12
-"""So many positions are unrolled in all."""
-
-States = Mapping[str, ltl.Formula]
-"""What conditions are, by their texts: formulas over the atoms of properties."""
-
-
-class NotComparedError(Exception):
-    """A property, or a formula, is not of a form that is compared; the message says why."""
 
 
 def of_property(property_: PropertySpecification, step: Nanoseconds) -> f.Formula:
@@ -175,126 +168,6 @@ def _is_bounded(of: properties.Property) -> bool:
 
 
 @dataclass(frozen=True)
-class Core:
-    """Makes core LTL of formulas; `definitions` are of the atoms for the past. With `unrolls`, bounds are unrolled."""
-
-    states: States
-    unrolls: bool
-    definitions: list[ltl.Formula] = field(default_factory=list)
-    _known: dict[tuple[str, ltl.Formula, ltl.Formula], ltl.Formula] = field(default_factory=dict)
-    _opaque: dict[tuple[str, ltl.Formula, ltl.Formula, int, int | None], ltl.Formula] = field(default_factory=dict)
-
-    def of(self, formula: f.Formula) -> ltl.Formula:
-        """`formula` in core LTL. Raises NotComparedError."""
-        match formula:
-            case f.Atom(text):
-                return self.states.get(text, ltl.Atom(text))
-            case f.Truth():
-                return ltl.TRUE
-            case f.Not(operand):
-                return ltl.Not(self.of(operand))
-            case f.And(left, right):
-                return ltl.And(self.of(left), self.of(right))
-            case f.Or(left, right):
-                return ltl.Or(self.of(left), self.of(right))
-            case f.Next(operand, steps):
-                found = self.of(operand)
-                if steps > MOST_STEPS and not self.unrolls:
-                    return self._hidden("X", ltl.TRUE, found, steps, steps)
-                self._check(steps)
-                for _ in range(steps):
-                    found = ltl.weak_next(found)
-                return found
-            case f.Previous(operand, steps):
-                return self._previous(self.of(operand), steps)
-            case f.Until(left, right, start, stop):
-                return self._until(left, right, start, stop)
-            case f.Since(left, right, start, stop):
-                return self._since(left, right, start, stop)
-            case _:
-                assert_never(formula)
-
-    def _check(self, steps: int) -> None:
-        if steps > MOST_STEPS:
-            raise NotComparedError("the bounds are too long to be unrolled")
-
-    def _until(self, left: f.Formula, right: f.Formula, start: int, stop: int | None) -> ltl.Formula:
-        p, q = self.of(left), self.of(right)
-        if stop is None and not start:
-            return ltl.Until(p, q)
-        if not self.unrolls:
-            if not start and left != f.TRUE:
-                return ltl.And(ltl.Until(p, q), self._hidden("F", ltl.TRUE, q, start, stop))
-            return self._hidden("F", p, q, start, stop)
-        self._check(stop or start)
-        found = q if stop is not None else ltl.Until(p, q)
-        for _ in range((stop or start) - start):
-            found = ltl.Or(q, ltl.And(p, ltl.Next(found)))
-        for _ in range(start):
-            found = ltl.And(p, ltl.Next(found))
-        return found
-
-    def _since(self, left: f.Formula, right: f.Formula, start: int, stop: int | None) -> ltl.Formula:
-        p, q = self.of(left), self.of(right)
-        if stop is not None and not self.unrolls:
-            return self._hidden("O", p, q, start, stop)
-        self._check(stop or start)
-        found = q if stop is not None else self._defined("since", p, q)
-        for _ in range((stop or start) - start):
-            found = ltl.Or(q, ltl.And(p, self._previous(found, 1)))
-        for _ in range(start):
-            found = ltl.And(p, self._previous(found, 1))
-        return found
-
-    @property
-    def hides(self) -> bool:
-        """Whether bounds stand for themselves."""
-        return bool(self._opaque)
-
-    def _hidden(self, word: str, p: ltl.Formula, q: ltl.Formula, start: int, stop: int | None) -> ltl.Formula:
-        """An atom for what is the same wherever it is written the same; it is known that `eventually` follows."""
-        key = (word, p, q, start, stop)
-        if key not in self._opaque:
-            atom = ltl.Atom(f"bounded {len(self._opaque)}")
-            later = ltl.Until(p, q) if word == "F" else ltl.TRUE
-            self.definitions.append(ltl.globally(ltl.implies(atom, later)))
-            if not start:
-                self.definitions.append(ltl.globally(ltl.implies(q, atom)))
-            for (other, left, right, *bounds), same in self._opaque.items():
-                if (other, *bounds) == (word, start, stop):
-                    alike = ltl.globally(ltl.And(_same(left, p), _same(right, q)))
-                    self.definitions.append(ltl.implies(alike, ltl.globally(_same(same, atom))))
-            self._opaque[key] = atom
-        return self._opaque[key]
-
-    def _previous(self, operand: ltl.Formula, steps: int) -> ltl.Formula:
-        if steps > MOST_STEPS:
-            if self.unrolls:
-                self._check(steps)
-            return self._hidden("Y", ltl.TRUE, operand, steps, steps)
-        for _ in range(steps):
-            operand = self._defined("previous", ltl.TRUE, operand)
-        return operand
-
-    def _defined(self, word: str, p: ltl.Formula, q: ltl.Formula) -> ltl.Formula:
-        """The atom that is true where `p since q` is, or where `q` was at the position before; defined once."""
-        key = (word, p, q)
-        if key not in self._known:
-            atom = self._known[key] = ltl.Atom(f"{word} {len(self._known)}")
-            first: ltl.Formula = ltl.Not(atom)
-            after = q
-            if word == "since":
-                first, after = _same(atom, q), ltl.Or(ltl.Next(q), ltl.And(ltl.Next(p), atom))
-            is_last = ltl.Not(ltl.Next(ltl.TRUE))
-            self.definitions.extend((first, ltl.globally(ltl.Or(is_last, _same(ltl.Next(atom), after)))))
-        return self._known[key]
-
-
-def _same(left: ltl.Formula, right: ltl.Formula) -> ltl.Formula:
-    return ltl.And(ltl.implies(left, right), ltl.implies(right, left))
-
-
-@dataclass(frozen=True)
 class Shown:
     """How a property relates to a formula: what tells them apart, a run that only one of them accepts.
 
@@ -318,51 +191,70 @@ def compare(formula: f.Formula, written: f.Formula, states: States, possible: Al
 
     Steps have letters of `possible`. To be called in a child process: it may take any time.
     """
-    hidden = _Pair(formula, written, Core(states, unrolls=False), possible)
     try:
-        whole = _Pair(formula, written, Core(states, unrolls=True), possible) if hidden.core.hides else hidden
+        pair = _Pair(formula, written, Core(Conditions(states, possible), unrolls=True))
+        return pair.on_finite_runs() if pair.is_equal else pair.on_infinite_runs()
     except NotComparedError as error:
+        hidden = _Pair(formula, written, Core(Conditions(states, possible), unrolls=False))
         if not hidden.is_equal:
             raise
         shown_so = hidden.on_finite_runs()
         return Shown(only_infinite=str(error)) if shown_so.finite else shown_so
-    return whole.on_finite_runs() if hidden.is_equal or whole.is_equal else whole.on_infinite_runs()
 
 
 class _Pair:
-    """A formula and the property that is written for it, in core LTL, and the letters that their runs have."""
+    """A formula and the property that is written for it, in core LTL, and the letters that their runs have.
 
-    def __init__(self, formula: f.Formula, written: f.Formula, core: Core, possible: Alphabet) -> None:
-        self.core = core
-        theirs, ours = core.of(formula), core.of(written)
-        known = ltl.conjunction(core.definitions)
-        self._theirs, self._ours = ltl.And(theirs, known), ltl.And(ours, known)
-        read = ltl.atoms(ltl.And(self._theirs, self._ours))
-        self._alphabet = Alphabet(read, tuple(group for group in possible.groups if set(group.atoms) <= set(read)))
-        states = (*core.states.values(), *map(ltl.Atom, possible.atoms))
-        self._plain = frozenset(name for state in states for name in ltl.atoms(state))
+    Each formula is an automaton of its own, and so is each definition: of all together, it would be large.
+    """
 
-    @property
+    def __init__(self, formula: f.Formula, written: f.Formula, core: Core) -> None:
+        self._formulas = core.of(formula), core.of(written)
+        self._known, self._states = core.definitions, core.states
+        read = ltl.atoms(ltl.conjunction((*self._formulas, *self._known)))
+        conditions = core.states.alphabet()
+        self._alphabet = Alphabet(
+            (*conditions.atoms, *(a for a in read if a not in conditions.atoms)), conditions.groups
+        )
+
+    @cached_property
     def is_equal(self) -> bool:
         """Whether no infinite run tells them apart."""
-        theirs, ours = self._theirs, self._ours
-        return implies(theirs, ours, self._alphabet) and implies(ours, theirs, self._alphabet)
+        theirs, ours = map(self._space.of, self._formulas)
+        known = self._known_words
+        return self._space.implies([theirs, *known], ours) and self._space.implies([ours, *known], theirs)
+
+    @cached_property
+    def _space(self) -> Languages:
+        return Languages(self._alphabet)
+
+    @cached_property
+    def _known_words(self) -> list[Language]:
+        """What is known of the past has no end: it is the same at each position of a run that ends."""
+        return [self._space.of(each) for each in self._known]
 
     def on_infinite_runs(self) -> Shown:
         """Shortest infinite runs that tell them apart."""
-        pairs = ((self._theirs, self._ours), (self._ours, self._theirs))
-        found = (distinguishing_lasso(ltl.And(left, ltl.Not(right)), self._alphabet)[0] for left, right in pairs)
+        known = ltl.conjunction(self._known)
+        found = (distinguishing_lasso(ltl.conjunction((known, *pair)), self._alphabet)[0] for pair in self._apart())
         theirs, ours = (shown(self._told(run)) if run else "" for run in found)
         return Shown(theirs, ours)
 
     def on_finite_runs(self) -> Shown:
         """Shortest finite runs that tell them apart, if any do."""
-        words = distinguishing_words([self._theirs, self._ours], self._alphabet)
-        theirs, ours = (shown(self._told(word)) if word else "" for word in words)
+        pairs = ([self._space.of(each, finite=True) for each in pair] for pair in self._apart())
+        found = (self._space.shortest_word([*pair, *self._known_words]) for pair in pairs)
+        theirs, ours = (shown(self._told(word)) if word else "" for word in found)
         return Shown(theirs, ours, finite=bool(theirs or ours))
 
+    def _apart(self) -> Iterator[tuple[ltl.Formula, ltl.Formula]]:
+        """What runs satisfy that only the formula accepts, and those that only the property accepts."""
+        theirs, ours = self._formulas
+        yield theirs, ltl.Not(ours)
+        yield ours, ltl.Not(theirs)
+
     def _told(self, run: Word | Lasso) -> Word | Lasso:
-        """`run` with the atoms of the property only."""
+        """`run` with the atoms of the property."""
         if isinstance(run, Lasso):
-            return Lasso(*(tuple(letter & self._plain for letter in part) for part in (run.stem, run.loop)))
-        return tuple(letter & self._plain for letter in run)
+            return Lasso(*(tuple(map(self._states.letter, part)) for part in (run.stem, run.loop)))
+        return tuple(map(self._states.letter, run))
