@@ -156,7 +156,7 @@ def few_children() -> Iterator[None]:
 
 @pytest.fixture
 def quickly() -> Iterator[None]:
-    """What is built is not cross-checked and not replayed, for tests that are about something else."""
+    """What is built is not analysed, cross-checked or replayed, for tests that are about something else."""
     with quick_gate():
         yield
 

@@ -1,6 +1,6 @@
-"""Jobs of the gate in the process that runs the tests, rather than in children.
+"""Jobs in the process that runs the tests, rather than in children.
 
-To fork a process that has collected all tests takes some 35 ms of a CPU, more than most of these jobs do.
+To fork a process that has collected all tests takes some 35 ms of a CPU, more than most jobs do.
 """
 
 from __future__ import annotations
@@ -20,8 +20,24 @@ from ltlc.base.limits import Budget, Exceeded, Limit, Watch, children, run_all
 
 Result = TypeVar("Result")
 
-CALLERS = ("ltlc.assurance.evidence.certified", "ltlc.assurance.gate")
-"""Who has jobs in Python only: those of Spot and of compiled code stay in children, which can be stopped."""
+CALLERS = (
+    "ltlc.analysis.analyse",
+    "ltlc.analysis.comparison.answer",
+    "ltlc.analysis.comparison.bounded",
+    "ltlc.analysis.comparison.constructors",
+    "ltlc.analysis.explanation",
+    "ltlc.assurance.evidence.certified",
+    "ltlc.assurance.exactness",
+    "ltlc.assurance.gate",
+    "ltlc.assurance.library",
+    "ltlc.automata.batch",
+    "ltlc.importing.conversion",
+    "ltlc.interfaces.commands.emitted_code",
+)
+"""Whose jobs these are; those of servers can be given up at any time, and stay in children."""
+
+AMPLE_SECONDS = 4.0
+"""A job that has less time is meant to be stopped, which an engine can be in a child only."""
 
 
 class _LateError(BaseException):
@@ -40,8 +56,9 @@ def run_here(
     patience: float = children.PATIENCE,
 ) -> list[Result | Exceeded]:
     """As `run_all`, but memory has no bound."""
-    if threading.current_thread() is not threading.main_thread():
+    if budget.seconds < AMPLE_SECONDS or threading.current_thread() is not threading.main_thread():
         return run_all(jobs, budget, seconds, watch, patience)
+    _forget_numbers()
     deadline = time.monotonic() + seconds
     outcomes: list[Result | Exceeded] = []
     for job in jobs:
@@ -49,6 +66,12 @@ def run_here(
         if watch:
             watch(len(outcomes), len(jobs))
     return [children._value(outcome) for outcome in outcomes]
+
+
+def _forget_numbers() -> None:
+    """Let z3 begin anew, as in a child: which numbers it finds depends on what it was asked before."""
+    if z3 := sys.modules.get("z3.z3"):
+        vars(z3)["_main_ctx"] = None
 
 
 def _outcome(job: Callable[[], Result], budget: Budget, seconds: float) -> Result | Exceeded:

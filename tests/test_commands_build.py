@@ -267,7 +267,6 @@ def test_errors_of_the_file_are_findings_and_a_file_that_is_not_there_is_unusabl
     assert "no/such/folder.py cannot be written" in shown
 
 
-@pytest.mark.usefixtures("quickly")
 def test_what_the_analyses_find_is_shown_and_does_not_keep_build_from_building(folder: Path, capsys: Any) -> None:
     (folder / "props.txt").write_text("never robot.velocity > 2\neventually robot.velocity > 3\n")
     assert main(["build", "props.txt"]) == 0
