@@ -19,6 +19,7 @@ from ltlc.base.source import Source
 from ltlc.frontend.language import load_text
 from ltlc.inputs.recordings.rows import Row
 from ltlc.monitoring.columns import extremes, timeline
+from ltlc.monitoring.columns.extremes import Clamps
 from ltlc.monitoring.columns.measuring import Band, Curve, Measuring
 from ltlc.monitoring.columns.past import Predicates
 from ltlc.monitoring.columns.prepared import prepare_all
@@ -63,6 +64,17 @@ def test_columns_have_the_robustness_of_the_definition_at_every_step(
     expected = [robustness(run[k:], property_) for k in range(line.count)]
     assert found.at(np.arange(line.count)).tolist() == expected
     assert of_steps.tolist() == [expected[k] for k in line.steps.tolist()]
+
+
+@pytest.mark.parametrize("count", [1, 2, 7, 16, 50])
+def test_clamps_in_lanes_make_what_they_make_one_after_the_other(count: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(extremes, "LANE", 2)
+    monkeypatch.setattr(extremes, "LANES", 19)
+    low, high = np.random.default_rng(count).normal(size=(2, count))
+    expected = [0.5]
+    for least, most in zip(low[::-1], high[::-1], strict=True):
+        expected.append(max(least, min(most, expected[-1])))
+    assert extremes.backwards(Clamps(low, high), 0.5).tolist() == expected[:0:-1]
 
 
 def continued(chance: Random, steps: Sequence[Measured], until: int, later: Sequence[Measured]) -> list[Measured]:

@@ -338,6 +338,20 @@ def test_runs_that_violate_by_their_inputs_are_tried_first() -> None:
     assert found.document()["found"]["simulation"] == 2
 
 
+def test_runs_that_violate_by_the_choices_of_an_input_are_tried_first() -> None:
+    blinks = "after on, after not on, after on, after not on, after on, after not on, never on"
+
+    def simulate(given: Mapping[str, Any]) -> Rows:
+        return [
+            (k / 10, {"on": [word for time, word in given["on"] if time <= k / 10][-1] == "true"})
+            for k in range(round(given["seconds"] * 10))
+        ]
+
+    found = ltlc.falsify(DECLARATIONS + blinks, simulate, inputs=["on=false,true@8"], seconds=4, simulations=2)
+    assert found.exit_code == 1
+    assert found.document()["found"]["simulation"] == 2
+
+
 def test_runs_of_signals_that_are_no_inputs_are_no_beginning() -> None:
     found = ltlc.falsify(SLOW, lambda _: constant(v=0), inputs=["push=0..1@8"], seconds=4, simulations=2)
     assert found.exit_code == 0
@@ -538,6 +552,8 @@ def test_an_input_has_equally_long_pieces_and_says_only_where_it_changes() -> No
     space: Space = space_of([], ["u=0..1@4"], 10.0)
     assert space.assignment((0.0, 0.5, 0.5, 1.0)).values["u"] == ((0.0, 0.0), (2.5, 0.5), (7.5, 1.0))
     assert list(islice(space.times(space.parameters[0]), 4)) == [0.0, 2.5, 5.0, 7.5]
+    thirds = space_of([], ["u=0..1@3"], 1.0)
+    assert thirds.times(thirds.parameters[0]) == [0.0, 0.333333333, 0.666666667]
 
 
 def test_verdicts_of_all_simulations_are_counted() -> None:

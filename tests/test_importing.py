@@ -210,6 +210,8 @@ C2PO_SAID = {
     "a => F[0,2] b": "always (a implies eventually b within 2 s)",
     "a -> b -> a": "always ((a implies b) implies a)",
     "prev(true, a)": "never @{not a, -1 else false}",
+    "rate(v) > 0.5": "always v - @{v, -1 else 0} > 0.5",
+    "2.0 * rate(v) > w": "always 2.0 * (v - @{v, -1 else 0}) > w",
     "a ? b : low": "always ((a implies b) and (a or low))",
     "(a ? v : w) > 3.5": "always ((a implies v > 3.5) and (a or w > 3.5))",
 }

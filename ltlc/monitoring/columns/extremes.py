@@ -40,7 +40,7 @@ def extremes_from(extreme: np.ufunc, margins: Array, last: float) -> Array:
 
 
 def extremes_of_windows(extreme: np.ufunc, margins: Array, firsts: Places, ends: Places) -> Array:
-    """The least or greatest of the margins from each of `firsts` to before its end.
+    """The least or greatest of the margins from each of `firsts` to before its end, which is later.
 
     All are looked at in blocks that are longer than the longest window.
     """
@@ -57,8 +57,6 @@ def _of_halves(extreme: np.ufunc, margins: Array, firsts: Places, ends: Places, 
     """Each is that of two halves that overlap, both a power of two long."""
     lengths = ends - firsts
     least, most = int(lengths.min()), int(lengths.max())
-    if not least:
-        found[lengths == 0] = empty(extreme)
     for level in range(most.bit_length()):
         half = 1 << level
         if half <= least and most < 2 * half:

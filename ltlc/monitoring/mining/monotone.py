@@ -96,8 +96,7 @@ class Monotony:
             raise NotMonotoneError(reason, "write an ordering, or mine the margin: `=={?} 0`")
         left = self._expression(one.left, other.left, one.right)
         right = self._expression(one.right, other.right, one.left)
-        margin = (other.margin > one.margin) - (other.margin < one.margin)
-        grows = right + margin - left
+        grows = right - left
         return grows if one.relation in (Relation.LESS, Relation.AT_MOST) else -grows
 
     def _expression(self, one: Expression, other: Expression, beside: Expression) -> int:
