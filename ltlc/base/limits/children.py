@@ -83,7 +83,7 @@ def run_all(
 
 
 def run_each(
-    jobs: Sequence[Callable[[], Result]], budget: Budget, workers: int | None = None
+    jobs: Sequence[Callable[[], Result]], budget: Budget, workers: int | None = None, patience: float = PATIENCE
 ) -> Generator[tuple[int, Result | Exceeded], None, None]:
     """The number of each job and its result, as they come, from as many `workers` (default: one for each CPU).
 
@@ -91,7 +91,7 @@ def run_each(
     """
     _refuse_without_fork()
     left = len(jobs)
-    with _Children(jobs, budget, math.inf, workers) as children:
+    with _Children(jobs, budget, math.inf, workers, patience) as children:
         while left:
             for number, outcome in children.reports():
                 left -= 1

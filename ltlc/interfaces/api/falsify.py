@@ -166,7 +166,7 @@ class _Simulator:
             return
         given = list(assignments)
         jobs = [partial(_sent, self._simulate, each.document()) for each in given]
-        with closing(run_each(jobs, UNBOUNDED, self._jobs)) as results:
+        with closing(run_each(jobs, UNBOUNDED, self._jobs, patience=0)) as results:
             for assignment, sent in zip(given, in_order(results), strict=True):
                 yield assignment, self._judged(partial(_received, sent))
 
