@@ -161,7 +161,8 @@ def _ended_as_by_ctrl_c() -> Iterator[None]:
 class _Simulations:
     """Simulates by a command in a folder for each time, and judges.
 
-    Of the folders only the last stays with a violation of the property that was violated first: what that is shrunk to.
+    Of the folders, the last two stay with a violation of the property that was violated first: what that is shrunk to,
+    and, if Ctrl-C comes before that is known, what it was shrunk to before.
     """
 
     def __init__(self, command: Command, judge: Judge, folder: Path) -> None:
@@ -170,17 +171,19 @@ class _Simulations:
         self._folder = folder
         self._is_first = True
         self._label: str | None = None
-        self._kept: Path | None = None
+        self._kept: list[Path] = []
 
     def __call__(self, assignments: Iterable[Assignment]) -> Generator[tuple[Assignment, Outcome], None, None]:
         with closing(self._command.simulate(assignments, self._folder)) as left:
             for assignment, folder, recording in left:
                 outcome = recording if isinstance(recording, SimulationError) else self._judged(recording)
-                others: Path | None = folder
                 if not isinstance(outcome, SimulationError) and self._is_sought(outcome):
-                    others, self._kept = self._kept, folder
-                if others is not None:
-                    shutil.rmtree(others, ignore_errors=True)
+                    self._kept.append(folder)
+                    gone, self._kept = self._kept[:-2], self._kept[-2:]
+                else:
+                    gone = [folder]
+                for each in gone:
+                    shutil.rmtree(each, ignore_errors=True)
                 yield assignment, outcome
 
     def _is_sought(self, judged: RunReport) -> bool:
