@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import re
+import signal
 import socket
 import sys
 import time
@@ -20,6 +21,7 @@ from ltlc.falsification.command import Command, command_of
 from ltlc.falsification.domains import PORTS, free_domains
 from ltlc.falsification.keeping import keep
 from ltlc.falsification.parameters import space_of
+from ltlc.falsification.process import uninterrupted
 
 PROPS = """
 decl v /odom nav_msgs/Odometry.twist.twist.linear.x
@@ -263,6 +265,16 @@ if {when}:
         os.kill(os.getppid(), signal.{name})
     time.sleep(1000)
 """
+
+
+def test_ctrl_c_while_a_simulation_is_started_comes_once_it_can_be_ended() -> None:
+    begun = []
+    with pytest.raises(KeyboardInterrupt):  # noqa: PT012
+        with uninterrupted():
+            signal.raise_signal(signal.SIGINT)
+            begun.append("simulation")
+        pytest.fail("it was lost")
+    assert begun
 
 
 def test_what_was_found_before_shrinking_was_interrupted_is_kept(falsify: Falsify, capsys: Said) -> None:
