@@ -22,9 +22,9 @@ Definition constructive :=
    @interval_means, @interval_means_not, @open_for, @opened, @episode_opened, @past_part_right, @clock_part_right,
    @next_part_right, @counted_parts_right, @whole_means, @evidence_of_instances, @lines_of_instance, @opened_by_is,
    @guarded_well, @never_at_a_loss, @in_time, @few_are_sent, @time_goes_on, @necessary, @guarded_verdict,
-   @check_guard_sound, @check_guard_of_something, @moves_in_time, @started_clocks_wait, @node_is_guarded, @robustness_right, @looking_back_right,
-   @robustness_near, @looking_back_near, @same_verdict, @nth_greatest_is, @count_margin_right, @count_margin_near,
-   @computed_right, @in_band, @band_narrows,
+   @check_guard_sound, @check_guard_of_something, @moves_in_time, @started_clocks_wait, @node_is_guarded,
+   @robustness_right, @looking_back_right, @robustness_near, @looking_back_near, @same_verdict, @nth_greatest_is,
+   @count_margin_right, @count_margin_near, @count_margin_known, @computed_right, @in_band, @band_narrows,
    @band_verdict, @looking_back_known, @interval_continued, @band_tight, @letter_exists, @band_wider).
 
 (** At most the law of the excluded middle. *)

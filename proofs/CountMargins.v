@@ -2,7 +2,8 @@
 
     [nth_greatest_is]: N of the margins or more are as large, for every size. [count_margin_right]: a positive margin
     means that the count holds, a negative one that it does not. [count_margin_near]: if no margin differs by more than
-    d, neither does that of the count. So what [Robustness.v] says of runs, it says of runs with counts.
+    d, neither does that of the count. [count_margin_known]: it depends on the past alone. So what [Robustness.v] and
+    [Bands.v] say of runs, they say of runs with counts.
     Python: [Occurred] in [_looking_back] and [_occurs], [ltlc/semantics/robustness.py]. *)
 From Coq Require Import List Arith Lia Bool ZArith.
 Import ListNotations.
@@ -109,3 +110,19 @@ Section Count.
     destruct (begins o); [|exact I]. destruct j as [|i]; [exact I|]. apply near_neg, near_margins, H.
   Qed.
 End Count.
+
+(** It is known where the run is: of what is the same up to k, it is the same there. *)
+Theorem count_margin_known : forall o t t' comes comes' v v' k,
+  (forall j, j <= k -> t j = t' j /\ comes j = comes' j /\ forall a, v j a = v' j a) ->
+  count_margin o t comes v k = count_margin o t' comes' v' k.
+Proof.
+  intros o t t' comes comes' v v' k H.
+  assert (HP : forall p j, j <= k -> at_margins p (v j) = at_margins p (v' j)).
+  { intros p j Hj. destruct (H j Hj) as (_ & _ & A). induction p; simpl; f_equal; auto. }
+  unfold count_margin. rewrite (proj1 (H 0 ltac:(lia))), (proj1 (H k ltac:(lia))).
+  destruct (still_presumed o (t' 0) (t' k)); auto. f_equal. apply map_ext_in. intros j Hj. apply in_seq in Hj.
+  assert (HR : recent t (bounded o) j k = recent t' (bounded o) j k).
+  { unfold recent. destruct (bounded o); auto. now rewrite (proj1 (H j ltac:(lia))), (proj1 (H k ltac:(lia))). }
+  rewrite HR. unfold occurs_margin. rewrite (proj1 (proj2 (H j ltac:(lia)))), HP by lia.
+  destruct j as [|i]; auto. now rewrite (HP _ i) by lia.
+Qed.
