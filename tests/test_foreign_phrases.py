@@ -24,6 +24,8 @@ from ltlc.semantics.verdicts import Verdict
 NAMES = f"""{DECLARED}decl v /odom Odometry.twist.twist.linear.x
 decl scan /scan LaserScan.ranges
 decl far /far LaserScan.ranges
+decl place /odom Odometry.pose.pose.position
+zone yard = [(0, 0), (4, 0), (4, 3)]
 """
 
 SAME = [
@@ -139,6 +141,15 @@ OTHERS = [
     ("p U[0,5] q", "(until q, always p) and (eventually q within 5 s)"),
     ("p until[0,3] q", "(until q, always p) and (eventually q within 3 s)"),
     ("eventually p in 2 s", "eventually p within 2 s"),
+    ("p in 2 s", "eventually p within 2 s"),
+    ("always (q implies p in 2 s)", "always (q implies (eventually p within 2 s))"),
+    ("never once p 4 times in 2 s", "never once p 4 times within 2 s"),
+    ("never once p 4 within 2 s", "never once p 4 times within 2 s"),
+    ("never p 4 times within 2 s", "never once p 4 times within 2 s"),
+    ("never max(v over 2 s) > 1", "never once v > 1 within 2 s"),
+    ("always rate(/odom) >= 10 Hz over 1 s", "always rate(v) >= 10 Hz over 1 s"),
+    ("each g of v: always v[g] > 1", "each g of v: always v > 1"),
+    ("never place in yard", "never inside(place, yard)"),
     ("always v between 0 and 1", "always (0 <= v and v <= 1)"),
     ("never |v| > 2", "never abs(v) > 2"),
     ("never v' > 2", "never (v - @{v, -1}) > 2"),
@@ -349,6 +360,7 @@ def test_each_phrase_is_tried_here() -> None:
         "w = /imu Imu.a",
         "decl w /odom/a/b",
         "decl w /w B a/b",
+        "zone z = (0, 0), (4, 0), (4, 3)",
         "decl w B /w.a",
     ]
     untried = [

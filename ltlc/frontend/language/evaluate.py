@@ -239,8 +239,14 @@ def constant(checker: Checker, node: syntax.Node) -> float | None:
 _OF_EACH = "inside `any(…)`, `all(…)` and `count(…)` this applies to each element"
 
 
-_CHANGES = ("derivative", "deriv", "diff", "gradient", "slope", "der", "d")
-"""What others call the change of a signal."""
+_CHANGES = dict.fromkeys(
+    ("derivative", "deriv", "diff", "gradient", "slope", "der", "d"),
+    ("({0} - @{{{0}, -1}})", "the change since the previous sample; `X.velocity` is the change per second"),
+)
+_PREVIOUS = dict.fromkeys(("previous", "prev", "pre", "lag"), ("@{{{0}, -1}}", "the sample before the latest"))
+_AVERAGES = dict.fromkeys(("average", "avg"), ("mean({0})", "of the elements of an array"))
+_OTHERS = {**_CHANGES, **_PREVIOUS, **_AVERAGES}
+"""What others call functions of a signal, how these are written, and what that is."""
 
 _RATE = "compare a rate with one in Hz, by `>=` or `<`, as in `rate(v) >= 10 Hz over 1 s`"
 
@@ -248,11 +254,11 @@ _RATE = "compare a rate with one in Hz, by `>=` or `<`, as in `rate(v) >= 10 Hz 
 def _call(checker: Checker, node: syntax.Call) -> Value | None:
     name = node.function.text
     if name not in FUNCTIONS:
-        if name in _CHANGES and len(node.arguments) == 1:
-            of = checker.written(node.arguments[0])
-            fix = writing(node.span, f"({of} - @{{{of}, -1}})")
-            change = f"{fix.title}, the change since the previous sample; `X.velocity` is the change per second"
-            checker.report("LTL107", node.function.span, f"there is no function `{name}`", help=Help(change, (fix,)))
+        if name in _OTHERS and len(node.arguments) == 1:
+            form, meaning = _OTHERS[name]
+            fix = writing(node.span, form.format(checker.written(node.arguments[0])))
+            written = Help(f"{fix.title}, {meaning}", (fix,))
+            checker.report("LTL107", node.function.span, f"there is no function `{name}`", help=written)
             return None
         place, listed = node.function.span, "the functions are " + ", ".join(f"`{f}`" for f in FUNCTIONS)
         help = _RATE if name == "rate" else respell(place, name, FUNCTIONS, is_closed=True)
@@ -283,9 +289,11 @@ def _call(checker: Checker, node: syntax.Call) -> Value | None:
 
 def _of_samples(checker: Checker, name: str, argument: syntax.Node) -> Help:
     """How `name` is taken of the last samples of a number."""
-    of = checker.written(argument)
-    fix = writing(argument.span, f"@{{{of}, -9:}}")
-    return Help(f"write `{name}(@{{{of}, -9:}})` for its last 10 samples", (fix,))
+    if isinstance(argument, syntax.History) and argument.otherwise is None:  # `@{v, -9}` for `@{v, -9:}`
+        form = f"@{{{checker.written(argument.signal)}, {checker.written(argument.offset)}:}}"
+        return Help(f"write `{name}({form})` for all samples since that one", (writing(argument.span, form),))
+    form = f"@{{{checker.written(argument)}, -9:}}"
+    return Help(f"write `{name}({form})` for its last 10 samples", (writing(argument.span, form),))
 
 
 def _among(checker: Checker, node: syntax.Call, function: Function) -> Value | None:

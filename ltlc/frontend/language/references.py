@@ -429,7 +429,8 @@ def _component(checker: Checker, step: syntax.Word, base: Value) -> Value | None
 def _element(checker: Checker, step: syntax.NumberLiteral, base: Value) -> Value | None:
     """An element of an array that is a signal; a signal itself."""
     if not isinstance(base, Array):
-        checker.report("LTL212", step.span, f"{base.noun} has no elements")
+        help = "for an earlier sample, write `@{v, -1}`" if step.text.startswith("-") else ""
+        checker.report("LTL212", step.span, f"{base.noun} has no elements", help=help)
         return None
     if not step.text.isdigit() or len(step.text) > MAX_DIGITS:
         help = "an index is written `[0]`"
@@ -452,7 +453,8 @@ def _element(checker: Checker, step: syntax.NumberLiteral, base: Value) -> Value
 def _slice(checker: Checker, step: syntax.Range, base: Value) -> Value | None:
     """Some elements of an array, as Python counts them."""
     if not isinstance(base, Array):
-        checker.report("LTL212", step.span, f"{base.noun} has no elements")
+        help = "for the last samples, write `@{v, -9:}`" if step.start and step.start.text.startswith("-") else ""
+        checker.report("LTL212", step.span, f"{base.noun} has no elements", help=help)
         return None
     ends = [end for end in (step.start, step.stop) if end is not None]
     wrong = next((e for e in ends if not e.text.removeprefix("-").isdigit() or len(e.text) > MAX_DIGITS), None)

@@ -140,7 +140,8 @@ def _attributes(at: Situation) -> Diagnostic | None:
         return at.report("LTL006", message, help=form) if is_behind and "decl" not in at.expected else None
     word = at.previous and _UNQUOTED.match(at.source.text, at.previous.span.start)
     if word and at.token.span.start < word.end():
-        help = write(writing(Span(*word.span()), f'"{word.group()}"', is_certain=True))
+        key = "id " if word.start() == opener.span.end else ""
+        help = write(writing(Span(*word.span()), f'{key}"{word.group()}"', is_certain=not key))
         return diagnostic("LTL001", at.source, Span(*word.span()), f"`{word.group()}` must be a string", help=help)
     if "]" in at.expected:
         return at.report("LTL005", f"`[` is not closed before {at.found}", Label(opener.span, "opened here"), help=form)
@@ -383,9 +384,9 @@ def _stray_closing(at: Situation) -> Diagnostic | None:
 _MISTAKES: tuple[Callable[[Situation], Diagnostic | None], ...] = (
     _definition_in_model,
     _colon_in_message,
+    _attributes,
     _single_equals,
     _keyword_as_name,
-    _attributes,
     _id_as_label,
     _forall,
     _label_in_forall,

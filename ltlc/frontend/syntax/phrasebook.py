@@ -66,6 +66,7 @@ _LISTS = (
 )
 _LAST_SECOND = "a rate is the number of messages in a time, here the last second, which must be at least so many"
 _SUBJECT = r"(?P<v>[A-Za-z]\w*(?:\.\w+)*)"
+_BOUNDED = r"(?:eventually|never|once|since)\b(?:(?!\b(?:and|or|implies)\b).)*"
 _COMPARED = r"(?P<c>\s*(?:[<>]=?|[=!]=)\s*[-\w.]+)?"
 _TOPIC = r"[/~][\w/~]+"
 _GUARD = rf"guard\s+{_TOPIC}\s+to\s+{_TOPIC}"
@@ -76,8 +77,13 @@ PHRASES: tuple[Phrase, ...] = (
     Phrase(r"(?P<x>.*\S)\s*;+", "{x!r}"),
     Phrase(r"(?P<l>\w+)\s*:\s*(?P<x>\w+\s*:.*)", "{x!r}", "a property has one label"),
     Phrase(r"(?P<x>.*)\|(?P<v>[^|]+)\|(?P<y>.*)", "{x!r}abs({v!r}){y!r}"),
-    Phrase(rf"(?P<x>.*)\bin\s+{_D}(?P<y>.*)", "{x!r}within {d!r}{y!r}"),
-    Phrase(r"(?P<x>.*)\bage\(\s*(?P<t>/[\w/]+)\s*\)(?P<y>.*)", "{x!r}age({t.name}){y!r}"),
+    Phrase(rf"(?P<x>(?:.*\s)?{_BOUNDED})\bin\s+{_D}(?P<y>.*)", "{x!r}within {d!r}{y!r}"),
+    Phrase(rf"{_STATE}{_ONE}\s+in\s+{_D}", "eventually {p} within {d!r}"),
+    Phrase(r"(?P<x>.*)\b(?P<f>age|rate)\(\s*(?P<t>/[\w/]+)\s*\)(?P<y>.*)", "{x!r}{f!r}({t.name}){y!r}"),
+    Phrase(
+        rf"(?P<x>.*)\b(?P<f>min|max|mean|median|sum)\(\s*{_SUBJECT}\s+(?:over|within|in|for)\s+{_D}\s*\)(?P<y>.*)",
+        "{x!r}{f!r}({v!r}) over {d!r}{y!r}",
+    ),
     Phrase(r"(?P<x>.*?)\bnew\s+(?P<t>/[\w/]+)(?P<y>.*)", "{x!r}new {t.name}{y!r}"),
     Phrase(r"(?P<x>(?!decl\b).*?(?:^|[\s(]))(?P<t>/\w+(?:[./]\w+)+)(?P<y>.*)", "{x!r}{t.signal}{y!r}"),
     *(
@@ -214,6 +220,11 @@ PHRASES: tuple[Phrase, ...] = (
         rf"(?P<x>(?:(?:always|never|eventually)\s+)?){_STATE}{_ONE}\s+at\s+least\s+(?P<n>\d+)\s+times",
         "{x!r}once {p} {n!r} times",
     ),
+    Phrase(rf"(?P<x>.*\bonce\s+.*\S)\s+(?P<n>\d+)(?P<y>\s+within\s+{_D})", "{x!r} {n!r} times{y!r}"),
+    Phrase(
+        rf"(?P<x>(?:(?:always|never|eventually)\s+)?)(?!once\b){_STATE}{_ONE}\s+(?P<n>\d+)\s+times(?P<y>\s+within\s+{_D})?",
+        "{x!r}once {p} {n!r} times{y!r}",
+    ),
     Phrase(r"G\s*(?P<x>\(.+\)|not .+)", "always {x!r}"),
     Phrase(r"F\s*(?P<x>\(.+\)|not .+)", "eventually {x!r}"),
     Phrase(rf"after\s+{_P}\s+until\s+{_Q}{_BODY}(?P<x>.+)", "after_until {p}, {q}, {x!r}"),
@@ -238,7 +249,11 @@ PHRASES: tuple[Phrase, ...] = (
             (r"equals", "=="),
         )
     ),
-    # One property for each id or message, of all elements, and rates.
+    # One property for each id or message, of all elements, and rates; zones.
+    Phrase(r"(?P<x>each\s+(?P<v>\w+)\s+of\s.*?\w)\[\s*(?P=v)\s*\](?P<y>.*)", "{x!r}{y!r}"),
+    Phrase(
+        r"(?P<x>zone\s+\w+)\s*(?:=\s*)?(?P<a>\([^()]*\))(?P<y>\s*,.*,\s*)(?P<b>\([^()]*\))", "{x!r} = [{a!r}{y!r}{b!r}]"
+    ),
     Phrase(
         r"(?:for\s+)?(?:each|every|all)\s+(?P<v>\w+)\s+(?:of|in)\s+(?P<k>\w+)\s*[:,]\s*(?P<x>.+)",
         "each {v!r} of {k!r}: {x!r}",
@@ -308,5 +323,6 @@ PHRASES: tuple[Phrase, ...] = (
         )
     ),
     Phrase(rf"(?P<x>.*)\b(?P<f>mean|median|sum){_WINDOW}(?P<y>.*)", "{x!r}{f!r}(@{{{v!r}, -49:}}){y!r}", _FIFTY),
+    Phrase(rf"(?P<x>.*?){_SUBJECT}\s+in\s+(?P<k>[A-Za-z]\w*)(?P<y>.*)", "{x!r}inside({v!r}, {k.zone}){y!r}"),
 )
 """In the order in which they are tried, those of whole sentences before those of their parts."""

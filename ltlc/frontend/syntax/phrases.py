@@ -190,6 +190,12 @@ class _Group:
         return next((name for name, of in declared if of == steps), self._matched)
 
     @property
+    def zone(self) -> str:
+        """It, if it is a zone; else nothing."""
+        is_zone = re.search(rf"\bzone\s+{re.escape(self._matched)}\s*=", self._text)
+        return self._matched if is_zone else ""
+
+    @property
     def path(self) -> str:
         """With points for slashes."""
         return self._matched.strip("/").replace("/", ".")

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import csv
 import json
+import re
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
@@ -147,14 +148,21 @@ class CsvTable:
             raise self._error("LTL803", line, message) from None
 
 
+_TIME_LIKE = re.compile(r"(?:t|time|timestamp|stamp|sec|secs|seconds|zeit)\b", re.IGNORECASE)
+"""Columns by which others call times."""
+
+
 def _help_without_time(cells: Sequence[str]) -> str:
     if len(cells) == 1 and any(c in cells[0] for c in ";\t"):
-        return "columns are separated by commas"
+        return "columns are separated by commas, and numbers have a decimal point"
     if any(_is_number(cell) for cell in cells):
         return (
             "`ros2 topic echo --csv` writes no column names or times: record a bag, or export one with PlotJuggler, "
             "which calls columns `__time` and `/odom/twist/twist/linear/x`"
         )
+    other = next((cell for cell in map(str.strip, cells) if _TIME_LIKE.match(cell)), None)
+    if other is not None:
+        return f"is it `{other}`? rename it to `time`; times are in seconds"
     return "the first line names the columns: `time` in seconds, and the signals"
 
 

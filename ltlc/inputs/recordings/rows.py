@@ -55,6 +55,10 @@ LONGEST_GAP = 366 * 86_400 * SECOND
 """Between two rows of one run; more is a change of clocks."""
 
 
+_UNITS = ((18, "nanoseconds"), (15, "microseconds"), (11, "milliseconds"))
+"""So many digits a time since 1970 has at least in these units."""
+
+
 def time_of_row(path: Path, place: str, previous: Nanoseconds | None, written: str) -> Nanoseconds:
     """The time that `written`, in seconds, is: not before that of the row before, nor a year after it.
 
@@ -64,7 +68,8 @@ def time_of_row(path: Path, place: str, previous: Nanoseconds | None, written: s
         time = nanoseconds(ascii_number(written))
     except (NotAValueError, ValueError):
         message = f"{place}: `{written}` is not a time in seconds"
-        help = "is it in nanoseconds? times must be in seconds, before the year 2116" if written.isdigit() else ""
+        unit = next((unit for digits, unit in _UNITS if len(written) >= digits), "")
+        help = f"is it in {unit}? times must be in seconds, before the year 2116" if written.isdigit() and unit else ""
         raise failure("LTL804", path, message, help or calendar_help(written.strip('"'))) from None
     check_order(path, place, previous, time)
     return time
