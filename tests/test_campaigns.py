@@ -280,6 +280,18 @@ def test_the_exit_code_is_that_of_the_worst_recording(
     assert ran(capsys, *map(str, paths))[0] == code
 
 
+def test_a_violation_before_a_damage_is_counted_in_the_summary(
+    drives: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    damaged = {"x.csv": FAST + "x\n", "y.csv": GOOD + "x\n"}
+    for name, content in damaged.items():
+        (drives / name).write_text(content)
+    paths = [str(drives / name) for name in damaged]
+    _, out, _ = ran(capsys, *paths)
+    assert out.endswith("2 recordings: 2 not judged to the end, 1 of these with a violation before that\n")
+    assert json.loads(ran(capsys, *paths, "--format", "json")[1])["summary"]["violated_not_judged_whole"] == 1
+
+
 @pytest.mark.usefixtures("drives")
 def test_a_recording_that_is_not_there_does_not_keep_others_from_being_judged(
     capsys: pytest.CaptureFixture[str],

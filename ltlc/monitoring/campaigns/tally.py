@@ -99,6 +99,8 @@ class Tally:
     recordings: int = 0
     codes: dict[int, int] = field(default_factory=lambda: dict.fromkeys((0, 1, 2, 3), 0))
     errors: list[tuple[str, str]] = field(default_factory=list)
+    cut_short: int = 0
+    """Those that were not judged to the end, and have a violation before that."""
     kept: int = 0
     again: int = 0
     extracts: int = 0
@@ -111,6 +113,8 @@ class Tally:
         self.again += outcome.tries > 1
         self.extracts += len(outcome.extracts)
         self.codes[outcome.exit_code] += 1
+        is_violated = any(found.verdict is Verdict.VIOLATED for found in outcome.properties)
+        self.cut_short += outcome.exit_code == 2 and is_violated
         for out, counts in outcome.guards.items():
             self.guards.setdefault(out, Counter()).update(counts)
         if outcome.error is not None:
@@ -148,6 +152,7 @@ class Tally:
             "owed_or_not_started": self.codes[3],
             "hold": self.codes[0],
             "not_judged_whole": self.codes[2],
+            "violated_not_judged_whole": self.cut_short,
             "judged_before": self.kept,
             "tried_again": self.again,
             "properties": [
@@ -166,11 +171,12 @@ class Tally:
 
     def sentence(self) -> str:
         """The tally in one line."""
+        among = f", {self.cut_short} of these with a violation before that" if self.cut_short else ""
         told = {
             f"with a violation{' or a guard that lost' if self.guards else ''}": self.codes[1],
             "with something still open or not started": self.codes[3],
             "in which all properties hold": self.codes[0],
-            "not judged to the end": self.codes[2],
+            f"not judged to the end{among}": self.codes[2],
             "judged before": self.kept,
             "tried again": self.again,
         }
