@@ -6,6 +6,7 @@ import contextlib
 import json
 import math
 import os
+import textwrap
 import xml.etree.ElementTree as ElementTree
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -538,3 +539,16 @@ def test_that_the_rows_of_a_table_have_no_headers_is_said(tmp_path: Path, capsys
     (tmp_path / "run.csv").write_text("time,v\n0,1\n")
     assert main(["run", "--stamp", "header", str(tmp_path / "props.txt"), str(tmp_path / "run.csv")]) == 0
     assert "warning[LTL815]: the rows of a table have no headers" in capsys.readouterr().err
+
+
+def test_a_table_from_a_spreadsheet_is_judged_once_it_is_changed_as_the_page_says(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    page = (Path(__file__).parents[1] / "docs" / "recordings.md").read_text(encoding="utf-8")
+    code = page.partition("**From a spreadsheet.**")[2].partition("\n\n")[2].partition("\n## ")[0]
+    monkeypatch.chdir(tmp_path)
+    Path("drive.csv").write_text("Zeit;speed\n27.11.2026 10:00:00;0,5\n27.11.2026 10:00:01;\n27.11.2026 10:00:02;2,5\n")
+    Path("props.txt").write_text("decl speed /speed Float64.data\nlimit: never speed > 2\n")
+    exec(textwrap.dedent(code), {})
+    assert main(["run", "props.txt", "drive.parquet"]) == 1
+    assert "limit: violated at +2 s (step 1); 2 steps" in capsys.readouterr().out

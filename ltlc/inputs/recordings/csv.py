@@ -154,7 +154,7 @@ _TIME_LIKE = re.compile(r"(?:t|time|timestamp|stamp|sec|secs|seconds|zeit)\b", r
 
 def _help_without_time(cells: Sequence[str]) -> str:
     if len(cells) == 1 and any(c in cells[0] for c in ";\t"):
-        return "columns are separated by commas, and numbers have a decimal point"
+        return "columns are separated by commas, and numbers have a decimal point; docs/recordings.md converts others"
     if any(_is_number(cell) for cell in cells):
         return (
             "`ros2 topic echo --csv` writes no column names or times: record a bag, or export one with PlotJuggler, "
