@@ -139,7 +139,7 @@ def measured(drawn: Drawn) -> tuple[dict[str, Curve], dict[str, Captured], Sessi
     compiled, specification = from_text(drawn.text)
     given = {name for part in drawn.parts for row in part for name in row.values} | set(KINDS) | {"v", "w"}
     given -= set(PARTS) - {"robot.position.x"}
-    plan = load_plan(compiled, specification, given)
+    plan = load_plan(compiled, specification, given - {"v", "w", "flag"})  # the messages of which open instances
     captured: dict[str, Captured] = {each.specification.label: Captured() for each in compiled}
 
     def track(property_: MonitoredProperty, keep: bool, observer: Observer | None) -> Track:
@@ -185,6 +185,53 @@ def test_curves_begin_with_a_margin_whose_sign_is_the_verdict(seed: int) -> None
         elif curve.whole != 0:
             holds = track.verdict in (Verdict.SATISFIED, Verdict.PRESUMABLY_SATISFIED)
             assert (curve.whole > 0) is holds, drawn.text
+
+
+class Opening(Draw):
+    """Draws properties that are judged from each message on."""
+
+    def _property(self) -> str:
+        return f"each new {self.chance.choice(('v', 'w', 'flag'))}: {super()._property()}"
+
+
+@pytest.mark.parametrize("seed", range(share_of(200)))
+def test_from_each_message_on_the_sign_is_the_verdict(seed: int) -> None:
+    drawn = Opening(Random(seed)).drawn()
+    with sizes(Random(seed)):
+        curves, _, session, _, bands = measured(drawn)
+    for track in session.tracks:
+        curve, band = curves[track.property.label], bands[track.property.label]
+        if curve.whole is None or not track.slices or not track.slices.ids.messages:
+            continue  # as what has been put in the place of v, w or flag has no messages here
+        assert band.low == -math.inf
+        assert curve.whole <= band.high
+        if curve.whole != 0:
+            holds = track.verdict in (Verdict.NOT_STARTED, Verdict.PRESUMABLY_SATISFIED)
+            assert (curve.whole > 0) is holds, drawn.text
+        if band.high < 0:
+            assert track.verdict is Verdict.VIOLATED, drawn.text
+
+
+@pytest.mark.parametrize("rate", ["", "_rate_ = 10\n"])
+def test_the_message_with_the_least_robustness_is_named(rate: str) -> None:
+    tenth = 10**8
+    given: list[dict[str, Any]] = [
+        {"w": 1.0},
+        {"v": 1.0},
+        {"w": 2.5},
+        {"v": 2.0},
+        {"w": 1.75},
+        {},
+        {"v": 3.0},
+        {"w": 3.0},
+    ]
+    rows = [Row(k * tenth, values) for k, values in enumerate(given)]
+    text = DECLARATIONS + rate + "p: each new v: eventually (new w and w > 2) within 200 ms"
+    for parts in ([rows], [rows[:2], rows[2:5], rows[5:]]):
+        curve = measured(Drawn(text, parts))[0]["p"]
+        assert (curve.whole, curve.decided, curve.opened_at) == (-0.25, (4 * tenth, "w > 2"), 3 * tenth)
+        at = dict(zip(curve.times.tolist(), curve.margins.tolist(), strict=True))
+        assert (at[tenth], at[4 * tenth], at[7 * tenth]) == (-0.25, 1.0, math.inf)
 
 
 @pytest.mark.parametrize("seed", range(share_of(120)))
@@ -258,7 +305,9 @@ def test_a_condition_has_the_margin_that_the_documentation_says(condition: str, 
 @pytest.mark.parametrize(
     ("text", "reason"),
     [
-        ("p: each i of n: never v > i", "`each`: every id or message has a run of its own"),
+        ("p: each i of n: never v > i", "`each`: every id has a run of its own"),
+        ("p: each new flag: never v > @{v, opening}", "values at an opening, from each message on"),
+        ("p: each new v limit 1: eventually v > 2 within 1 s", "messages were ignored for which there was no place"),
         (
             "p: after historically flag for 1 ns, never v > @{v, opening}",
             "time opens or closes a scope, at whose opening a value is read, between two steps",

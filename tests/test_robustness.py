@@ -184,7 +184,7 @@ def test_a_run_that_goes_on_has_what_its_robustness_can_still_be() -> None:
     }
     live.finish()
     assert possible(live)["slow"] == (1.25, 1.25)
-    assert live.robustness["each_"].reason == "`each`: every id or message has a run of its own"
+    assert live.robustness["each_"].reason == "`each`: every id has a run of its own"
     live.reset()
     assert possible(live)["slow"] == anything
 
@@ -201,3 +201,21 @@ def test_what_comes_after_a_timeout_changes_nothing() -> None:
 def test_nothing_is_kept_of_a_run_whose_robustness_was_not_asked_for() -> None:
     with pytest.raises(ltlc.UnusableInput, match="`robustness=True`"):
         assert ltlc.monitor(LIVE).robustness
+
+
+def test_the_message_from_which_on_a_property_holds_least_is_reported(
+    drive: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = "decl speed /speed std_msgs/Float64.data\np: each new speed: eventually speed > 1.5 within 1 s\n"
+    (drive / "props.txt").write_text(text, encoding="utf-8")
+    assert ran(drive, "--robustness") == 1
+    assert "  p: -0.25 at +1 s, from the message at +0 s on: speed > 1.5\n" in capsys.readouterr().out
+    ran(drive, "--robustness", "--format", "json")
+    [found] = json.loads(capsys.readouterr().out)["properties"]
+    assert found["robustness"]["opened_at"] == 10.0
+    live = ltlc.monitor(text, robustness=True)
+    for time, speed in ((0, 0.5), (1, 1.25), (2.5, 1.75)):
+        live.step({"speed": speed}, time=time)
+    assert possible(live)["p"] == (-math.inf, -0.25)
+    live.finish()
+    assert possible(live)["p"] == (-0.25, -0.25)

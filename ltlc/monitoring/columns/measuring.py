@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from ltlc.compiler import Compiled
 from ltlc.dataclass import dataclass
 from ltlc.inputs.recordings.blocks import Array, Block, Places
-from ltlc.monitoring.columns.margins import margins_of
+from ltlc.monitoring.columns.margins import combined, margins_of
+from ltlc.monitoring.columns.opening import of_whole_run, whole_runs
 from ltlc.monitoring.columns.prepared import Prepared
 from ltlc.monitoring.columns.registers import Registers
 from ltlc.monitoring.columns.robustness import at_steps, still_possible
@@ -20,12 +21,15 @@ from ltlc.monitoring.columns.series import Columns, Steps, UnsupportedError
 from ltlc.monitoring.columns.timeline import Timeline
 from ltlc.monitoring.columns.values import not_numbers
 from ltlc.monitoring.columns.views import View, views_of
+from ltlc.runtime.rows import ByRows
 from ltlc.runtime.sampling import Reading, Window
 from ltlc.runtime.session import Session
 from ltlc.runtime.tracking import Track
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.encodings import EPISODE
+from ltlc.semantics.properties import After
 from ltlc.semantics.robustness import FALSE, TRUE
+from ltlc.specification.specification import Instances, Slicing
 
 Run = tuple[Timeline, Mapping[str, Array], Mapping[str, Nanoseconds]]
 
@@ -43,7 +47,8 @@ class Curve:
     `times`, in ns, and `margins` have one number for each step, in the order of the run; `margins[0]` is that of the
     whole run. A margin is in the unit of the values that decide it: positive where the property holds, negative where
     it is violated, infinite where no comparison of numbers decides it. `decided` has the time and the name of the first
-    comparison with the margin of the whole run. Of a property that cannot be measured there are none, and `reason` says
+    comparison with the margin of the whole run; of what is judged from each message on, it is that from the message at
+    `opened_at`. Of a property that cannot be measured there are none, and `reason` says
     why.
     """
 
@@ -51,6 +56,7 @@ class Curve:
     margins: NDArray[np.float64] = field(default_factory=lambda: np.empty(0))
     reason: str = ""
     decided: tuple[Nanoseconds, str] | None = None
+    opened_at: Nanoseconds | None = None
 
     @property
     def whole(self) -> float | None:
@@ -73,16 +79,19 @@ class Band:
 class _Gathered:
     """The margins of the atoms of a property at its steps, in parts."""
 
-    def __init__(self, compiled: Compiled, prepared: Prepared, track: Track, window: Window | None) -> None:
-        self._of = of = compiled.specification
+    def __init__(
+        self, compiled: Compiled, prepared: Prepared, track: Track, stepped: tuple[Track, Window] | None
+    ) -> None:
+        self._of = of = of_whole_run(compiled.specification)
         self._prepared = prepared
-        self._track = track
-        self._window = window
+        self._slices = track.slices
+        self._stepped = stepped
+        self._judged = compiled.specification
         self._reason = _unmeasured(compiled)
         self._times: list[Places] = []
         self._margins: dict[str, list[Array]] = {atom.name: [] for atom in of.atoms}
         self._registers: Registers | None = None
-        if of.openings() and not self._reason:
+        if compiled.specification.openings() and not self._reason:
             try:
                 self._registers = Registers(of, prepared)
             except UnsupportedError as error:
@@ -92,10 +101,10 @@ class _Gathered:
 
     def take(self, view: View, session: Session) -> None:
         """Gather those of a block, of which the property sees `view`."""
-        if self._reason or self._window is None:
+        if self._reason or self._stepped is None:
             return
         try:
-            steps = view.steps(session, self._track, self._window)
+            steps = view.steps(session, *self._stepped)
             if not self._times:
                 self._hear(steps)
             if len(steps):
@@ -129,27 +138,41 @@ class _Gathered:
         if self._reason or not (run := self._run(began, end)):
             return Curve(reason=self._reason)
         try:
-            self._require_registers(end)
-            found = at_steps(self._of.property, *run)
+            self._require_all(end)
+            found, opened_at = at_steps(self._of.property, *run), self._opened_at(*run)
         except UnsupportedError as error:
             return Curve(reason=str(error))
         line, margins, _ = run
         whole = np.require(found, requirements=("C", "W"))
         decided = _first_with(abs(float(found[0])), margins, line.times)
-        return Curve(line.times, whole, decided=decided and (decided[0], self._of.as_written(decided[1])))
+        decided = decided and (decided[0], self._judged.as_written(decided[1]))
+        return Curve(line.times, whole, decided=decided, opened_at=opened_at)
+
+    def _opened_at(
+        self, line: Timeline, margins: Mapping[str, Array], since: Mapping[str, Nanoseconds]
+    ) -> Nanoseconds | None:
+        """The first message from which on the property holds least, if it is judged from each on."""
+        said = self._judged.property
+        if not isinstance(self._judged.slicing, Instances) or not isinstance(said, After):
+            return None
+        opened = np.flatnonzero(combined(said.event, margins) > 0)
+        found = at_steps(said.body, line, margins, since)[opened]
+        return int(line.times[opened[found.argmin()]]) if len(opened) else None
 
     def band(self, began: Nanoseconds, end: Nanoseconds) -> Band:
         """What they can still come to in a run that has got to `end`."""
         if self._reason or not (run := self._run(began, end)):
             return Band(reason=self._reason)
         try:
-            self._require_registers(end)
+            self._require_all(end)
             return Band(*still_possible(self._of.property, *run))
         except UnsupportedError as error:
             return Band(reason=str(error))
 
-    def _require_registers(self, end: Nanoseconds) -> None:
-        """The values at openings are known in a run up to `end`. Raises UnsupportedError."""
+    def _require_all(self, end: Nanoseconds) -> None:
+        """All messages are judged, and values at openings known, in a run up to `end`. Raises UnsupportedError."""
+        if self._slices is not None and self._slices.left_out:
+            raise UnsupportedError("messages were ignored for which there was no place")
         if self._registers is not None and not self._registers.are_known(end):
             raise UnsupportedError("time opens or closes a scope, at whose opening a value is read, between two steps")
 
@@ -183,9 +206,9 @@ def _unmeasured(compiled: Compiled) -> str:
     of = compiled.specification
     if compiled.encoding.name != EPISODE.name:
         return f"the encoding `{compiled.encoding.name}`"
-    if of.slicing is not None:
-        return "`each`: every id or message has a run of its own"
-    return ""
+    if isinstance(of.slicing, Slicing):
+        return "`each`: every id has a run of its own"
+    return "values at an opening, from each message on" if of.slicing is not None and of.openings() else ""
 
 
 class Measuring:
@@ -197,35 +220,44 @@ class Measuring:
         self._began: Nanoseconds | None = None
         self._readings = [signal for signal in session.plan.signals if isinstance(signal, Reading)]
         self._definitions = {name: each for of in prepared for name, each in of.definitions.items()}
-        windows = {id(track): window for track, window in session.stepped}
+        specifications = [each.specification for each in compiled]
+        self._opened = whole_runs(session.plan, specifications, prepared)
+        stepped = [*session.stepped, *(() if self._opened is None else self._opened.session.stepped)]
+        seen = {track.property.label: (track, window) for track, window in stepped}
         self._gathered = {
-            track.property.label: _Gathered(of, needed, track, windows.get(id(track)))
+            track.property.label: _Gathered(of, needed, track, seen.get(track.property.label))
             for track, of, needed in zip(session.tracks, compiled, prepared, strict=True)
         }
 
     def take(self, block: Block) -> None:
         """Gather those of the rows of `block`, which the session takes next."""
         if len(block.times):
-            self._take(block, int(block.times[-1]))
+            self._take(self._session, block, int(block.times[-1]))
+            if self._opened is not None:
+                self._take(self._opened.session, block, int(block.times[-1]))
+                self._opened.take(block)
             self._began = int(block.times[0]) if self._began is None else self._began
 
     def finish(self, end: Nanoseconds) -> None:
         """Gather those of the ticks up to `end`, which the session takes next."""
         if self._session.paces is not None and self._began is not None:
-            self._take(NOTHING, min(end, self._session.end) + 1)
+            self._take(self._session, NOTHING, min(end, self._session.end) + 1)
+            if self._opened is not None:
+                self._take(self._opened.session, NOTHING, min(end, self._session.end) + 1)
+                ByRows(self._opened.session).advance(min(end, self._session.end))
 
-    def _take(self, block: Block, before: Nanoseconds) -> None:
-        rows = Columns(block, self._session.sampler, self._readings)
+    def _take(self, session: Session, block: Block, before: Nanoseconds) -> None:
+        rows = Columns(block, session.sampler, self._readings)
         try:
-            views = views_of(self._session, rows, before)
+            views = views_of(session, rows, before)
         except UnsupportedError as error:
-            for gathered in self._gathered.values():
-                gathered.refuse(str(error))
+            for track, _ in session.stepped:
+                self._gathered[track.property.label].refuse(str(error))
             return
         for view in views:
-            view.derive(self._session, self._definitions)
+            view.derive(session, self._definitions)
             for track in view.tracks:
-                self._gathered[track.property.label].take(view, self._session)
+                self._gathered[track.property.label].take(view, session)
             view.columns.release()
 
     def curves(self, end: Nanoseconds | None) -> dict[str, Curve]:

@@ -23,6 +23,8 @@ def robustness_report(session: Session, curve: Curve) -> dict[str, Any]:
         time, comparison = curve.decided
         offset = {} if session.beginning is None else {"offset": seconds(time - session.beginning)}
         found |= {"comparison": comparison, "time": seconds(time), "time_ns": time, **offset}
+    if curve.opened_at is not None:
+        found["opened_at"] = seconds(curve.opened_at)
     return found
 
 
@@ -39,10 +41,11 @@ def robustness_sentence(session: Session, curve: Curve) -> str:
     if reason := _reason(curve):
         return f"none: {reason}"
     margin = f"{curve.whole:.6g}"
+    of = "" if curve.opened_at is None else f" from the message at {session.scale.text(curve.opened_at)} on"
     if curve.decided is None:
-        return margin
+        return margin + of
     time, comparison = curve.decided
-    return f"{margin} at {session.scale.text(time)}: {comparison}"
+    return f"{margin} at {session.scale.text(time)}{',' * bool(of)}{of}: {comparison}"
 
 
 def _reason(curve: Curve) -> str:
