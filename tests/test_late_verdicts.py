@@ -8,6 +8,7 @@ from typing import Any
 from xml.etree import ElementTree
 
 import pytest
+from effort import share_of
 from timed import Draw, compiled
 
 import ltlc
@@ -134,7 +135,7 @@ def test_properties_of_one_shape_are_warned_of_each_by_its_name() -> None:
     assert ["`line 1[a]`" in late(diagnostics)[0], "`line 1[b]`" in late(diagnostics)[1]] == [True, True]
 
 
-@pytest.mark.parametrize("seed", range(120))
+@pytest.mark.parametrize("seed", range(share_of(240)))
 def test_a_warning_is_given_exactly_where_there_is_no_exact_certificate(seed: int) -> None:
     each = compiled(Draw(seed).property())
     found = checked_certificate(each)

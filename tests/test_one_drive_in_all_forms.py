@@ -15,6 +15,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 from bag_support import FORMS, SCAN, TWIST, Sent, made, odometry
+from effort import share_of
 from stepping import from_text
 
 from ltlc.monitoring.judging.run import run
@@ -178,7 +179,7 @@ def as_parquet(path: Path, sent: Sequence[Sent]) -> Path:
     return path
 
 
-@pytest.mark.parametrize("seed", range(30))
+@pytest.mark.parametrize("seed", range(share_of(60)))
 def test_a_drive_is_judged_alike_in_every_form(tmp_path: Path, seed: int) -> None:
     chance = Random(seed)
     compiled, specified, text = specification(chance)

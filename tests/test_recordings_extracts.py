@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 
 import pytest
 from bag_support import FORMS, ODOMETRY, STORE, TWIST, Sent, made, mcap, odometry, random_message, ros1, rosbag2
+from effort import share_of
 from mcap.reader import make_reader
 from mcap.records import Chunk
 from mcap.stream_reader import StreamReader
@@ -286,7 +287,7 @@ def test_a_property_is_violated_in_its_extracts_when_it_was_in_the_recording(
     here: Path, capsys: pytest.CaptureFixture[str], text: str
 ) -> None:
     (here / "p.ltlc").write_text(f"{HEAD}p: {text}\n")
-    for seed in range(15):
+    for seed in range(share_of(35)):
         chance, sent, time = random.Random(seed), [], BEGAN
         for _ in range(150):
             time += chance.choice((0, 10**8, 10**9, 3 * 10**9))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import pytest
+from effort import share_of
 from exact_time import judge
 from timed import ARRIVAL, Draw, X, Y, clocks, monitor_of
 
@@ -16,7 +17,7 @@ from ltlc.semantics.verdicts import Verdict
 
 
 def drawn(most_clocks: int) -> Iterator[tuple[Formula, Monitor]]:
-    for seed in range(100):
+    for seed in range(share_of(250)):
         property_ = Draw(seed).property(most_clocks=most_clocks)
         if clocks(property_):
             yield encode(property_, EPISODE), monitor_of(property_)

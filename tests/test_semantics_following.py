@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 from control_mutants import control_mutants
+from effort import share_of
 from hypothesis import given, settings
 from mutants import set_at
 from strategies import alphabets, properties
@@ -246,7 +247,7 @@ def covered(draw: Draw, depth: int) -> Compiled:
     return next(each for each in drawn if uncovered(each) is None)
 
 
-SEEDS = range(50)
+SEEDS = range(share_of(125))
 
 
 @pytest.mark.parametrize("seed", SEEDS)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from effort import share_of
 from exact_time import TooManyError, judge
 from timed import ARRIVAL, Draw, X, Y, clocks, monitor_of, ordinary_atoms
 
@@ -29,7 +30,7 @@ def certified(property_: Property) -> Certificate:
 def test_a_monitor_that_is_certified_exactly_is_never_late() -> None:
     """And nearly all that are never late are certified so."""
     on_time = exact = 0
-    for seed in range(100):
+    for seed in range(share_of(250)):
         property_ = Draw(seed).property(most_clocks=3)
         if clocks(property_) < 2:
             continue
