@@ -18,6 +18,7 @@ from ltlc.importing.document import document, rate
 from ltlc.importing.forms import FORMS, form_of, measure_of
 from ltlc.importing.names import Signals
 from ltlc.importing.requirement import UnusableFileError
+from ltlc.importing.showing import Shown
 from ltlc.importing.writing import Reading
 from ltlc.interfaces.commands.import_ import read
 
@@ -131,6 +132,35 @@ def test_a_timing_of_fret_means_what_fret_publishes_in_each_scope_and_with_each_
         assert found.shown.is_equal, found
 
 
+def test_a_unit_of_fret_that_it_does_not_count_is_told() -> None:
+    sentence = "the robot shall within 5 minutes satisfy lamp"
+    (found,), _ = imported("fret", fret((sentence, "((F[<=5] lamp) | (F[<5] LAST))")))
+    assert found.text == "eventually lamp within 5 s"
+    assert found.requirement.notes == ("FRET counts `5 minutes` as 5 positions",)
+    (seconds,), _ = imported("fret", fret((sentence.replace("minutes", "seconds"), "")))
+    assert not [note for note in seconds.requirement.notes if "counts" in note]
+
+
+def test_a_formula_of_fret_that_does_not_say_what_its_sentence_says_is_told() -> None:
+    (found,), text = imported("fret", fret(("the robot shall always satisfy (a | b) = c", "(LAST V (a | b))")))
+    assert found.shown is not None
+    assert not found.shown.is_equal
+    assert "Not equal: only the formula of FRET accepts `({" in text
+
+
+def test_conditions_are_compared_with_what_is_known_of_the_numbers_in_them() -> None:
+    def relation(high: str) -> Shown | None:
+        formula = f"((LAST V (((! {high}) & ((! LAST) & (X {high}))) -> (X lamp))) & ({high} -> lamp))"
+        sentence = "upon level > 5 if level > 7 the robot shall immediately satisfy lamp"
+        return imported("fret", fret((sentence, formula)))[0][0].shown
+
+    assert relation("(level > 7)") == Shown()
+    other = relation("(level > 5)")
+    assert other is not None
+    assert other.property_only == "({level > 5}) for ever"
+    assert other.formula_only == "{lamp, level > 5}; {level > 5, level > 7}; ({level > 5, level > 7}) for ever"
+
+
 def test_fret_excuses_what_is_open_at_the_end() -> None:
     (found,), text = imported("fret", fret(FRETISH["upon, within"][:2]))
     assert found.shown is not None
@@ -233,6 +263,12 @@ def test_the_past_of_c2po_is_said() -> None:
 
 def test_definitions_of_c2po_keep_their_names() -> None:
     assert "steady = abs(v - @{v, -1 else 22.0}) < 1.0\n" in imported("c2po", f"{C2PO} steady;")[1]
+
+
+def test_atoms_of_c2po_are_definitions() -> None:
+    text = "INPUT b: bool; v: float;\nATOMIC fast := v > 1.0; on := b == true;\nFTSPEC fast; on;"
+    assert said("c2po", text) == ["always fast", "always on"]
+    assert "fast = v > 1.0\n" in imported("c2po", text)[1]
 
 
 def test_lines_of_formulas_are_specifications_of_c2po() -> None:
@@ -420,6 +456,22 @@ PROBLEMS = {
     "an earlier message": ("hpl", "globally: /b as B requires /a {x < @B.x}", "values of an earlier message"),
     "a message that nobody names": ("hpl", "globally: no /a {x < @B.x}", "`@B` is no message"),
     "the number of a position": ("c2po", "INPUT a: bool;\nFTSPEC TAU > 3;", "`TAU`"),
+    "a probability of C2PO": ("c2po", "INPUT a: bool;\nFTSPEC P_0.87 (F[0,3] a) with d = -5;", "`P_0.87`"),
+    "a probability of FRET": (
+        "fret",
+        json.dumps([{"reqid": "a", "fulltext": "the robot shall with probability > 0.9 eventually satisfy lamp"}]),
+        "a probability is not decided by one run",
+    ),
+    "the last position of FRET": (
+        "fret",
+        json.dumps([{"reqid": "a", "fulltext": "the robot shall finally satisfy lamp"}]),
+        "the last position only",
+    ),
+    "a bound of FRET that is no number": (
+        "fret",
+        json.dumps([{"reqid": "a", "fulltext": "the robot shall within soon satisfy lamp"}]),
+        "there is `soon` where a number is expected",
+    ),
     "an array of C2PO for a condition": ("c2po", "INPUT xs: bool[2];\nFTSPEC xs;", "several values"),
     "a name that is two things": (
         "smv",

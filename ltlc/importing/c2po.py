@@ -82,7 +82,7 @@ def read(source: Source, signals: Signals, measure: Measure) -> list[Requirement
             case "INPUT":
                 for statement in statements:
                     form = replace(form, parts={**form.parts, **_inputs(statement, signals)})
-            case "DEFINE":
+            case "DEFINE" | "ATOMIC":
                 for statement in statements:
                     form = _define(statement, form, signals, measure)
             case "FTSPEC" | "PTSPEC":
@@ -181,6 +181,8 @@ def _requirement(statement: _Statement, number: int, form: Form, signals: Signal
     try:
         if re.search(r"\bTAU\b", formula):
             raise FormulaError("`TAU`, the number of the position, has no counterpart")
+        if probability := re.match(r"P_[\d.]+", formula):
+            raise FormulaError(f"the probability `{probability[0]}` is not decided by one run")
         assumed, contract = _CONTRACT.split(formula, maxsplit=1) if _CONTRACT.search(formula) else ("", formula)
         meaning = Formulas(contract, form, signals, measure).condition_alone()
         if assumed:

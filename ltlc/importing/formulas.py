@@ -117,7 +117,7 @@ def implies(left: Formula, right: Formula) -> Formula:
 
 def equivalent(left: Formula, right: Formula) -> Formula:
     """Both hold, or neither."""
-    return And(implies(left, right), implies(right, left))
+    return conjoined(implies(left, right), implies(right, left))
 
 
 def eventually(operand: Formula, start: int = 0, stop: int | None = None) -> Formula:

@@ -205,56 +205,96 @@ def compare(formula: f.Formula, written: f.Formula, states: States, possible: Al
 class _Pair:
     """A formula and the property that is written for it, in core LTL, and the letters that their runs have.
 
-    Each formula is an automaton of its own, and so is each definition: of all together, it would be large.
+    Each of their parts that must hold is an automaton of its own, and so is each definition: of all together, it would
+    be large. What shares no atom with a part, directly or through others, is first left out.
     """
 
     def __init__(self, formula: f.Formula, written: f.Formula, core: Core) -> None:
-        self._formulas = core.of(formula), core.of(written)
+        self._theirs, self._ours = list(_parts(core.of(formula))), list(_parts(core.of(written)))
         self._known, self._states = core.definitions, core.states
-        read = ltl.atoms(ltl.conjunction((*self._formulas, *self._known)))
-        conditions = core.states.alphabet()
-        self._alphabet = Alphabet(
-            (*conditions.atoms, *(a for a in read if a not in conditions.atoms)), conditions.groups
-        )
+        read = ltl.atoms(ltl.conjunction((*self._theirs, *self._ours, *self._known)))
+        letters = core.states.alphabet()
+        self._alphabet = Alphabet(tuple(dict.fromkeys((*letters.atoms, *read))), letters.groups)
+        self._space = Languages(self._alphabet)
+        self._translated: dict[tuple[ltl.Formula, bool], Language] = {}
 
     @cached_property
     def is_equal(self) -> bool:
         """Whether no infinite run tells them apart."""
-        theirs, ours = map(self._space.of, self._formulas)
-        known = self._known_words
-        return self._space.implies([theirs, *known], ours) and self._space.implies([ours, *known], theirs)
+        ways = ((self._theirs, self._ours), (self._ours, self._theirs))
+        return all(self._implied(given, then) for given, parts in ways for then in parts)
 
-    @cached_property
-    def _space(self) -> Languages:
-        return Languages(self._alphabet)
+    def _implied(self, given: list[ltl.Formula], then: ltl.Formula) -> bool:
+        return any(
+            self._space.implies([self._words(each, False) for each in some], self._words(then, False))
+            for some in self._premises(given, then)
+        )
 
-    @cached_property
-    def _known_words(self) -> list[Language]:
+    def _premises(self, given: list[ltl.Formula], then: ltl.Formula) -> Iterator[list[ltl.Formula]]:
+        """Some of `given` and of what is known, which concern `then`; and all of it, if that is more."""
+        found, others, read = [], [*given, *self._known], set(ltl.atoms(then))
+        while near := [each for each in others if not read.isdisjoint(ltl.atoms(each))]:
+            found += near
+            read.update(*map(ltl.atoms, near))
+            others = [each for each in others if each not in near]
+        yield found
+        if others:
+            yield [*given, *self._known]
+
+    def _words(self, formula: ltl.Formula, finite: bool) -> Language:
         """What is known of the past has no end: it is the same at each position of a run that ends."""
-        return [self._space.of(each) for each in self._known]
+        key = formula, finite and formula not in self._known
+        if key not in self._translated:
+            self._translated[key] = self._space.of(*key)
+        return self._translated[key]
 
     def on_infinite_runs(self) -> Shown:
         """Shortest infinite runs that tell them apart."""
+        theirs, ours = map(ltl.conjunction, (self._theirs, self._ours))
         known = ltl.conjunction(self._known)
-        found = (distinguishing_lasso(ltl.conjunction((known, *pair)), self._alphabet)[0] for pair in self._apart())
-        theirs, ours = (shown(self._told(run)) if run else "" for run in found)
-        return Shown(theirs, ours)
+        pairs = ((theirs, ltl.Not(ours)), (ours, ltl.Not(theirs)))
+        found = (distinguishing_lasso(ltl.conjunction((known, *pair)), self._alphabet)[0] for pair in pairs)
+        one, other = (shown(self._told(run)) if run else "" for run in found)
+        return Shown(one, other)
 
     def on_finite_runs(self) -> Shown:
         """Shortest finite runs that tell them apart, if any do."""
-        pairs = ([self._space.of(each, finite=True) for each in pair] for pair in self._apart())
-        found = (self._space.shortest_word([*pair, *self._known_words]) for pair in pairs)
-        theirs, ours = (shown(self._told(word)) if word else "" for word in found)
-        return Shown(theirs, ours, finite=bool(theirs or ours))
+        found = self._shortest(self._theirs, self._ours), self._shortest(self._ours, self._theirs)
+        one, other = (shown(self._told(word)) if word else "" for word in found)
+        return Shown(one, other, finite=bool(one or other))
 
-    def _apart(self) -> Iterator[tuple[ltl.Formula, ltl.Formula]]:
-        """What runs satisfy that only the formula accepts, and those that only the property accepts."""
-        theirs, ours = self._formulas
-        yield theirs, ltl.Not(ours)
-        yield ours, ltl.Not(theirs)
+    def _shortest(self, given: list[ltl.Formula], parts: list[ltl.Formula]) -> Word | None:
+        """A shortest finite run of which all of `given` hold, and one of `parts` does not; None if there is none."""
+        words: list[Word] = []
+        for part in parts:
+            for some in self._premises(given, part):
+                opposite = self._words(ltl.Not(part), True)
+                word = self._space.shortest_word([opposite, *(self._words(each, True) for each in some)])
+                if word is None:
+                    break
+            else:
+                words += [word] if word else []
+        return min(words, key=len, default=None)
 
     def _told(self, run: Word | Lasso) -> Word | Lasso:
         """`run` with the atoms of the property."""
         if isinstance(run, Lasso):
             return Lasso(*(tuple(map(self._states.letter, part)) for part in (run.stem, run.loop)))
         return tuple(map(self._states.letter, run))
+
+
+def _parts(formula: ltl.Formula) -> Iterator[ltl.Formula]:
+    """Formulas that all hold if `formula` does."""
+    match formula:
+        case ltl.And(left, right):
+            yield from _parts(left)
+            yield from _parts(right)
+        case ltl.Not(ltl.Or(left, right)):
+            yield from _parts(ltl.Not(left))
+            yield from _parts(ltl.Not(right))
+        case ltl.Not(ltl.Not(operand)):
+            yield from _parts(operand)
+        case ltl.Not(ltl.Until(ltl.Truth(), operand)):
+            yield from map(ltl.globally, _parts(ltl.Not(operand)))
+        case _:
+            yield formula
