@@ -15,7 +15,8 @@ ROOMS = {
     "test_libraries.py test_release.py test_provenance.py",
     "analysis": "test_analysis_*.py",
     "interfaces/api": "test_api*.py test_commands_compare.py test_comparison_corpus.py test_comparison_pictures.py",
-    "assurance": "test_assurance_*.py test_semantics_certificate.py test_each_code.py test_each_message_code.py",
+    "assurance": "test_assurance_*.py test_certify_evidence.py test_semantics_certificate.py test_each_code.py "
+    "test_each_message_code.py",
     "automata": "test_automata_*.py test_diagrams.py test_progression.py test_violations.py",
     "backends": "test_backends_tools.py test_backends_time.py test_automata_package.py test_comparison_pictures.py",
     "backends/ament": "test_backends_ament.py",
