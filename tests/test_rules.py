@@ -162,6 +162,16 @@ def test_an_unknown_pack_or_rule_is_answered_with_those_that_there_are(capsys: p
     assert "did you mean `gps_accuracy`?" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize("name", ["px4", "px4/gps_accuracy"])
+def test_a_pack_without_its_sign_is_answered_with_how_it_is_written(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(["check", name]) == 2
+    assert f"there is no file {name}" in (shown := capsys.readouterr().err)
+    assert f"write `@{name}` for the rule pack" in shown
+
+
 @pytest.mark.skipif(not FLIGHTS.is_dir(), reason="there are no flight logs of others here")
 def test_on_flights_of_others_the_rules_name_the_failure_and_its_time_or_are_silent(
     capsys: pytest.CaptureFixture[str],

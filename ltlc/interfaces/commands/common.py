@@ -6,6 +6,7 @@ import argparse
 import os
 import sys
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -109,12 +110,21 @@ def read_specification(
 ) -> Source | Diagnostic:
     """The text of the file at `path`, or of the rules called so that are about `recordings`, or why there is none."""
     if not str(path).startswith(RULES):
-        return read_source(path)
+        read = read_source(path)
+        return _or_pack(path, read) if isinstance(read, Diagnostic) else read
     from ltlc.rules.about import specification
 
     source, notes = specification(str(path), message_paths, recordings)
     report(notes)
     return source
+
+
+def _or_pack(path: Path, error: Diagnostic) -> Diagnostic:
+    """Why the file at `path` cannot be read; if a rule pack has its name, with a hint."""
+    from ltlc.rules import packs
+
+    is_pack = not error.help and path.parts[:1] and path.parts[0] in packs()
+    return replace(error, help=f"write `{RULES}{path}` for the rule pack") if is_pack else error
 
 
 def overwritten(outputs: Sequence[Path | None], inputs: Sequence[str | Path]) -> Path | None:
