@@ -449,6 +449,8 @@ PROBLEMS = {
         json.dumps([{"reqid": "a", "fulltext": "be good"}]),
         "FRETish is expected: ",
     ),
+    "an index that ends": ("smv", "G a[", "the formula ends where `]` is expected"),
+    "a slice that ends": ("c2po", "INPUT a: bool[2];\nFTSPEC a[1..", "a slice has numbers"),
     "a value": ("smv", "G (n + 1)", "is a value where a condition is expected"),
     "a bound between positions": ("smv", "F[0,1.5] p", "it is a whole number"),
     "an interval backwards": ("smv", "F[5,2] p", "ends before it begins"),
@@ -462,6 +464,22 @@ PROBLEMS = {
         json.dumps([{"reqid": "a", "fulltext": "the robot shall with probability > 0.9 eventually satisfy lamp"}]),
         "a probability is not decided by one run",
     ),
+    "a count in a scope of FRET": (
+        "fret",
+        json.dumps([{"reqid": "a", "fulltext": "in m the robot shall always satisfy occurred(3, lamp)"}]),
+        "`occurred` and `persisted` in a scope",
+    ),
+    "half a predicate of FRET": (
+        "fret",
+        json.dumps([{"reqid": "a", "fulltext": "the robot shall always satisfy occurred(lamp)"}]),
+        "`occurred` needs a number of positions",
+    ),
+    "a scope that FRET does not have": (
+        "fret",
+        json.dumps([{"reqid": "a", "fulltext": "except after m the robot shall always satisfy lamp"}]),
+        "another scope is expected",
+    ),
+    "the beginning of a sentence": ("fret", json.dumps([{"reqid": "a", "fulltext": "in"}]), "FRETish is expected"),
     "the last position of FRET": (
         "fret",
         json.dumps([{"reqid": "a", "fulltext": "the robot shall finally satisfy lamp"}]),

@@ -46,7 +46,7 @@ class Formulas(Parser):
                 self._need(".")
                 last = self._token.text
                 self._at += 1
-                if not (name + last).isdigit():
+                if not (name.isdigit() and last.isdigit()):
                     raise FormulaError("a slice has numbers", offset)
                 found = array(found.part(str(n), offset) for n in range(int(name), int(last) + 1))
             else:

@@ -1,4 +1,4 @@
-"""The conditions of formulas as atoms of their own: a letter is which of them hold, as far as that can be."""
+"""Predicate abstraction: the conditions of formulas as atoms of their own, with the letters that they can have."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class NotComparedError(Exception):
 
 
 @dataclass(frozen=True)
-class Conditions:
+class Abstraction:
     """Gives each condition an atom: the same one if they hold in the same letters of `possible`.
 
     A run over these atoms tells two formulas apart if and only if a run over those of `possible` does, and automata
@@ -83,7 +83,7 @@ class Conditions:
         return frozenset(found)
 
     def _groups(self) -> Iterator[tuple[Group, Diagram]]:
-        """Conditions that depend on one another, which of them can hold together, and what their letters satisfy."""
+        """Abstraction that depend on one another, which of them can hold together, and what their letters satisfy."""
         diagrams = self._diagrams
         known = self.possible.restricted_to(atom for atom in self.possible.atoms if atom in self._levels)
         limits = [of_diagrams(group.as_formula(), diagrams, self._variable) for group in known.groups]

@@ -7,7 +7,7 @@ from typing import assert_never
 
 from ltlc.dataclass import dataclass
 from ltlc.importing import formulas as f
-from ltlc.importing.conditions import Conditions, NotComparedError
+from ltlc.importing.conditions import Abstraction, NotComparedError
 from ltlc.semantics import ltl
 
 MOST_STEPS = 12
@@ -18,7 +18,7 @@ MOST_STEPS = 12
 class Core:
     """Makes core LTL of formulas; `definitions` are of the atoms for the past. With `unrolls`, bounds are unrolled."""
 
-    states: Conditions
+    states: Abstraction
     unrolls: bool
     definitions: list[ltl.Formula] = field(default_factory=list)
     _known: dict[tuple[str, ltl.Formula, ltl.Formula], ltl.Formula] = field(default_factory=dict)

@@ -184,6 +184,8 @@ def parse(text: str, signals: Signals, measure: Measure) -> tuple[Sentence, tupl
 class Conditions(Parser):
     """Reads conditions of FRET: with `if p then q`, and predicates of the last and the next positions."""
 
+    looks_back = False
+
     def _words(self, *words: str) -> str:
         """The next word, in small letters, if it is one of these; otherwise empty."""
         word = self._token.text.lower() if self._token.kind == "word" else ""
@@ -207,10 +209,12 @@ class Conditions(Parser):
     def _call(self, token: Token) -> Part:
         if token.text not in _LATELY:
             return super()._call(token)
-        count, condition = self._arguments()
-        if not isinstance(count, Value) or not count.text.isdigit():
-            raise FormulaError(f"`{token.text}` needs a number of positions", token.offset)
-        return _LATELY[token.text](self.condition(condition), int(count.text))
+        arguments = self._arguments()
+        count = arguments[0]
+        if len(arguments) != 2 or not isinstance(count, Value) or not count.text.isdigit():
+            raise FormulaError(f"`{token.text}` needs a number of positions and a condition", token.offset)
+        self.looks_back = self.looks_back or token.text in ("occurred", "persisted")
+        return _LATELY[token.text](self.condition(arguments[1]), int(count.text))
 
 
 _LATELY: Mapping[str, Callable[[f.Formula, int], f.Formula]] = {
@@ -242,6 +246,10 @@ class _Sentences(Conditions):
         self._take(".")
         if self._token.kind != "end":
             self._fail("the end")
+        if scope and self.looks_back:
+            raise FormulaError(
+                "`occurred` and `persisted` in a scope, where they count from its beginning, are not read"
+            )
         if timing == "never":
             timing, response = "always", f.negated(response)
         if is_only and timing == "after":
@@ -260,17 +268,20 @@ class _Sentences(Conditions):
             self._at = begin
             return False, "", f.TRUE
         is_inverted = (prefix != "") ^ is_not ^ (given == "unless")
+        is_only = prefix == "only"
+        if (is_only and (is_not or given == "unless")) or (prefix == "except" and word in ("after", "before")):
+            self._fail("another scope")
         if word in ("after", "before"):
             opposite = {"before": "onlyBefore", "after": "onlyAfter"}
             scope = opposite[word] if prefix else word
         else:
             scope = "notin" if is_inverted else "in"
-        if self._tokens[self._at + 1].kind == "word":
+        if self._token.kind == "word" and self._tokens[self._at + 1].kind == "word":
             self._words("mode")
         mode = self.condition(self.expression(0))
         self._words("mode")
         self._take(",")
-        return prefix == "only", scope, mode
+        return is_only, scope, mode
 
     def _condition(self) -> tuple[f.Formula | None, bool]:
         """The condition, if there is one, and whether every position at which it holds triggers."""

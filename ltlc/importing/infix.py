@@ -65,7 +65,7 @@ class Parser:
 
     @property
     def _token(self) -> Token:
-        return self._tokens[self._at]
+        return self._tokens[min(self._at, len(self._tokens) - 1)]
 
     def _fail(self, expected: str) -> NoReturn:
         raise self._failure(expected)

@@ -16,7 +16,7 @@ from ltlc.analysis.comparison.relate import distinguishing_lasso
 from ltlc.automata.languages import Language, Languages
 from ltlc.dataclass import dataclass
 from ltlc.importing import formulas as f
-from ltlc.importing.conditions import Conditions, NotComparedError, States
+from ltlc.importing.conditions import Abstraction, NotComparedError, States
 from ltlc.importing.core import Core
 from ltlc.semantics import ltl, properties, timed_atoms
 from ltlc.semantics.alphabet import Alphabet
@@ -192,10 +192,10 @@ def compare(formula: f.Formula, written: f.Formula, states: States, possible: Al
     Steps have letters of `possible`. To be called in a child process: it may take any time.
     """
     try:
-        pair = _Pair(formula, written, Core(Conditions(states, possible), unrolls=True))
+        pair = _Pair(formula, written, Core(Abstraction(states, possible), unrolls=True))
         return pair.on_finite_runs() if pair.is_equal else pair.on_infinite_runs()
     except NotComparedError as error:
-        hidden = _Pair(formula, written, Core(Conditions(states, possible), unrolls=False))
+        hidden = _Pair(formula, written, Core(Abstraction(states, possible), unrolls=False))
         if not hidden.is_equal:
             raise
         shown_so = hidden.on_finite_runs()
