@@ -83,7 +83,7 @@ class Abstraction:
         return frozenset(found)
 
     def _groups(self) -> Iterator[tuple[Group, Diagram]]:
-        """Abstraction that depend on one another, which of them can hold together, and what their letters satisfy."""
+        """Conditions that depend on one another, which of them can hold together, and what their letters satisfy."""
         diagrams = self._diagrams
         known = self.possible.restricted_to(atom for atom in self.possible.atoms if atom in self._levels)
         limits = [of_diagrams(group.as_formula(), diagrams, self._variable) for group in known.groups]
