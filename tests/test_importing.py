@@ -161,6 +161,11 @@ def test_conditions_are_compared_with_what_is_known_of_the_numbers_in_them() -> 
     assert other.formula_only == "{lamp, level > 5}; {level > 5, level > 7}; ({level > 5, level > 7}) for ever"
 
 
+def test_a_condition_that_only_the_formula_reads_is_one_of_the_same_numbers() -> None:
+    text = fret(("The tank shall always satisfy level > 5", "(LAST V ((level > 7) | (level > 5)))"), level="double")
+    assert said("fret", text) == ["always level > 5"]
+
+
 def test_fret_excuses_what_is_open_at_the_end() -> None:
     (found,), text = imported("fret", fret(FRETISH["upon, within"][:2]))
     assert found.shown is not None

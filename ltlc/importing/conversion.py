@@ -18,8 +18,11 @@ from ltlc.importing.readings import Parting, parting
 from ltlc.importing.requirement import Requirement
 from ltlc.importing.showing import Shown, compare, of_property
 from ltlc.importing.writing import Reading, UnsayableError, Writer
+from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.properties import predicates
+from ltlc.specification.alphabet import alphabet
+from ltlc.specification.atoms import Atom
 from ltlc.specification.specification import PropertySpecification
 
 
@@ -44,7 +47,8 @@ def convert(
     """Each requirement as far as it can be said."""
     candidates, problems = zip(*(_candidates(each, reading) for each in requirements), strict=True)
     texts = [text for found in candidates for text in found]
-    loaded = _Loaded(texts, list(dict.fromkeys(_atoms(requirements))), signals)
+    meanings = [each.meaning for each in requirements if each.meaning is not None]
+    loaded = _Loaded(texts, list(dict.fromkeys(text for each in meanings for text in _texts(each))), signals)
     trials = [
         _Trial(requirement, problem, [loaded.property(text) for text in found])
         for requirement, found, problem in zip(requirements, candidates, problems, strict=True)
@@ -116,10 +120,9 @@ def _candidates(requirement: Requirement, reading: Reading) -> tuple[list[str], 
     return list(dict.fromkeys(found)), problem
 
 
-def _atoms(requirements: Sequence[Requirement]) -> Iterator[str]:
-    for requirement in requirements:
-        if requirement.meaning is not None:
-            yield from (part.text for part in f.subformulas(requirement.meaning) if isinstance(part, f.Atom))
+def _texts(meaning: f.Formula) -> Iterator[str]:
+    """Those of the conditions in a formula."""
+    return (part.text for part in f.subformulas(meaning) if isinstance(part, f.Atom))
 
 
 class _Loaded:
@@ -134,15 +137,23 @@ class _Loaded:
         self._read = _read(self._source)
         self._properties = {each.label: each for each in self._read.sound.properties}
         self.states = {}
+        self._atoms: dict[str, Sequence[Atom]] = {}
         for number, atom in enumerate(atoms, len(texts)):
             if (property_ := self._properties.get(f"c_{number}")) is not None:
                 (self.states[atom],) = predicates(property_.property)
+                self._atoms[atom] = property_.atoms
 
     def property(self, text: str) -> PropertySpecification | str:
         """The property with this text, or why it is none."""
         number = self._texts.index(text)
         found = self._properties.get(f"c_{number}")
         return found or _error_at(self._read.diagnostics, self._first + number, self._source)
+
+    def possible(self, property_: PropertySpecification, meaning: f.Formula) -> Alphabet:
+        """The letters over the atoms of a property and of its formula."""
+        read = (each for text in dict.fromkeys(_texts(meaning)) for each in self._atoms.get(text, ()))
+        atoms = {each.name: each for each in (*property_.atoms, *read)}
+        return alphabet(atoms.values())
 
 
 def _read(source: Source) -> ReadText:
@@ -164,7 +175,8 @@ def _compare(trial: _Trial, loaded: _Loaded, step: Nanoseconds) -> Shown | NotCo
     property_, meaning = trial.properties[len(trial.outcomes)], trial.requirement.meaning
     assert meaning is not None
     try:
-        return compare(meaning, of_property(property_, step), loaded.states, property_.alphabet)
+        written = of_property(property_, step)
+        return compare(meaning, written, loaded.states, loaded.possible(property_, meaning))
     except NotComparedError as error:
         return error
 
@@ -172,4 +184,6 @@ def _compare(trial: _Trial, loaded: _Loaded, step: Nanoseconds) -> Shown | NotCo
 def _parting(trial: _Trial, loaded: _Loaded, step: Nanoseconds | None) -> Parting | None:
     """Where the readings of the formula part, if there is one."""
     meaning = trial.requirement.meaning
-    return None if meaning is None else parting(meaning, step, loaded.states, trial.properties[0].alphabet)
+    if meaning is None:
+        return None
+    return parting(meaning, step, loaded.states, loaded.possible(trial.properties[0], meaning))
