@@ -323,7 +323,7 @@ def test_what_cannot_be_measured_has_no_margins_but_a_reason(text: str, reason: 
 
 
 def test_values_at_openings_are_those_of_the_run() -> None:
-    flags, values = [False, True, True, False, True, True], [5.0, 1.0, 3.0, 9.0, 4.0, 4.5]
+    flags, values = [False, True, True, False, True, True], [5.0, 1.0, 3.0, 0.5, 4.0, 4.5]
     rows = [Row(k, {"flag": flag, "v": v}) for k, (flag, v) in enumerate(zip(flags, values, strict=True))]
     text = DECLARATIONS + "p: after_until flag, not flag, always v <= @{v, opening} + 3"
     for parts in ([rows], [rows[:2], rows[2:5], rows[5:]]):
@@ -342,10 +342,10 @@ def test_a_closing_event_reads_the_value_at_its_opening() -> None:
 
 
 def test_ticks_are_the_steps() -> None:
-    rows = [Row(k * 10**8 // 4, {"v": v}) for k, v in enumerate([1.0, 5.0, 2.0, 3.0, 4.0, 1.5])]
+    rows = [Row(k * 10**8 // 4, {"v": v}) for k, v in enumerate([1.0, 5.0, 2.0, 3.0, 4.0, 1.5, 9.0, 9.0, 0.5])]
     curves, *_ = measured(Drawn(DECLARATIONS + "_rate_ = 10\np: always v < 5", [rows[:2], rows[2:]]))
-    assert curves["p"].times.tolist() == [0, 10**8]
-    assert curves["p"].margins.tolist() == [1, 1]
+    assert curves["p"].times.tolist() == [0, 10**8, 2 * 10**8]
+    assert curves["p"].margins.tolist() == [1, 1, 4.5]
 
 
 @pytest.mark.parametrize(
