@@ -19,8 +19,9 @@ from ltlc.base.source import Source
 from ltlc.frontend.language import load_text
 from ltlc.inputs.recordings.rows import Row
 from ltlc.monitoring.columns import extremes, timeline
+from ltlc.monitoring.columns.curves import Band, Curve
 from ltlc.monitoring.columns.extremes import Clamps
-from ltlc.monitoring.columns.measuring import Band, Curve, Measuring
+from ltlc.monitoring.columns.measuring import Measuring
 from ltlc.monitoring.columns.past import Predicates
 from ltlc.monitoring.columns.prepared import prepare_all
 from ltlc.monitoring.columns.robustness import Robustness, at_steps, still_possible
@@ -305,7 +306,8 @@ def test_a_condition_has_the_margin_that_the_documentation_says(condition: str, 
 @pytest.mark.parametrize(
     ("text", "reason"),
     [
-        ("p: each i of n: never v > i", "`each`: every id has a run of its own"),
+        ("_rate_ = 10\np: each i of n: never v > i", "the ticks of each id"),
+        ("p: each i of n: after new n, never v > @{v, opening}", "values at an opening, of each id"),
         ("p: each new flag: never v > @{v, opening}", "values at an opening, from each message on"),
         ("p: each new v limit 1: eventually v > 2 within 1 s", "messages were ignored for which there was no place"),
         (

@@ -6,10 +6,14 @@ import base64
 import json
 import math
 import zlib
+from collections.abc import Sequence
 from pathlib import Path
+from random import Random
+from typing import Any
 
 import numpy as np
 import pytest
+from effort import share_of
 from stepping import from_text
 
 import ltlc
@@ -170,6 +174,7 @@ def test_a_run_that_goes_on_has_what_its_robustness_can_still_be() -> None:
         "soon": (-0.5, math.inf),
         "later": anything,
         "first": (-math.inf, 0.5),
+        "each_": (-math.inf, 0.5),
     }
     live.step({"speed": 0.75}, time=1.5)
     assert possible(live)["later"] == (-0.25, math.inf)
@@ -181,10 +186,11 @@ def test_a_run_that_goes_on_has_what_its_robustness_can_still_be() -> None:
         "soon": (-0.25, -0.25),
         "later": (-0.25, -0.25),
         "first": (0.25, 0.25),
+        "each_": (-math.inf, 0.25),  # another id can come
     }
     live.finish()
     assert possible(live)["slow"] == (1.25, 1.25)
-    assert live.robustness["each_"].reason == "`each`: every id has a run of its own"
+    assert possible(live)["each_"] == (0.25, 0.25)
     live.reset()
     assert possible(live)["slow"] == anything
 
@@ -219,3 +225,88 @@ def test_the_message_from_which_on_a_property_holds_least_is_reported(
     assert possible(live)["p"] == (-math.inf, -0.25)
     live.finish()
     assert possible(live)["p"] == (-0.25, -0.25)
+
+
+OF_EACH = """decl id /s geometry_msgs/Point.x
+decl x  /s geometry_msgs/Point.y
+decl v  /v std_msgs/Float64.data
+"""
+
+SLICED = (
+    "always x < 1.5 + {g}",
+    "never x > {g} and v > 1",
+    "always (x > 1 implies eventually v < 1 within 300 ms)",
+    "until x > 2.5, always v < 2 + {g}",
+    "eventually x > 2 within 500 ms",
+    "after x > 2, always (v < 2.5 or x < {g})",
+    "never historically x > 1 for 200 ms",
+    "never once x > 2 2 times within 1 s",
+    "always x - @{{x, -1}} < 2",
+    "after_until v < 1, v > 2, eventually x > {g}",
+    "always (new x implies x < 2 since v < 1)",
+    "never age(x) > 300 ms and x > 1",
+    "always (mean(@{{x, -1:}}) < 2 or v < {g})",
+)
+
+
+IDS = (1, 2, 3)
+
+
+def of_one(rows: Sequence[tuple[float, dict[str, Any]]], id_: float) -> list[tuple[float, dict[str, Any]]]:
+    """What is said of an id: all but the messages with another one."""
+    return [
+        (time, {name: value for name, value in row.items() if name == "v" or row["id"] == id_}) for time, row in rows
+    ]
+
+
+def messages_of_ids(seed: int, *, have_nan: bool) -> list[tuple[float, dict[str, Any]]]:
+    """Rows with messages of three ids, and of none."""
+    chance, time = Random(seed), 0.0
+    rows: list[tuple[float, dict[str, Any]]] = []
+    for _ in range(chance.randrange(1, 25)):
+        row: dict[str, Any] = {}
+        kind = chance.randrange(4)
+        if kind:
+            x = chance.choice((0.25, 1.75, 2.25, 3.0, math.nan if have_nan else 2.0))
+            row |= {"id": float(chance.choice(IDS)), "x": x}
+        if kind < 2:
+            row |= {"v": chance.choice((0.5, 1.25, 2.75))}
+        rows.append((time, row))
+        time += chance.choice((0.1, 0.3))
+    return [*rows, (time, {"v": 1.5})]
+
+
+@pytest.mark.parametrize("said", SLICED)
+def test_each_id_has_the_robustness_of_its_part_of_the_run_and_the_least_is_that_of_all(said: str) -> None:
+    alone = "".join(f"p{id_}: {said.format(g=id_)}\n" for id_ in IDS)
+    text = f"{OF_EACH}{alone}p: each g of id: {said.format(g='g')}"
+    drawn = [messages_of_ids(seed, have_nan="age(" not in said) for seed in range(share_of(30))]
+    parts = [part for rows in drawn for part in (rows, *(of_one(rows, id_) for id_ in IDS))]
+    runs = [found.robustness for found in ltlc.run_each(text, parts)]
+    for whole, *of_ids in zip(*[iter(runs)] * 4, strict=True):
+        found, curves = whole["p"], {id_: of[f"p{id_}"] for id_, of in zip(IDS, of_ids, strict=True)}
+        assert not any(curve.reason for curve in (found, *curves.values()))
+        expected = {id_: curve for id_, curve in curves.items() if curve.whole is not None}
+        assert found.whole == min((float(curve.margins[0]) for curve in expected.values()), default=None)
+        assert found.times.tolist() == sorted(time for curve in expected.values() for time in curve.times.tolist())
+        if expected:
+            assert found.id in expected
+            assert expected[int(found.id or 0)].whole == found.whole
+            assert found.margins[-1] == min(curve.margins[-1] for curve in expected.values())
+
+
+def test_what_a_limit_left_out_is_not_measured() -> None:
+    rows = [(0, {"id": 1, "x": 0.5}), (1, {"id": 2, "x": 0.5})]
+    found = ltlc.run(f"{OF_EACH}p: each g of id limit 1: never x > g", rows).robustness["p"]
+    assert (found.whole, found.reason) == (None, "messages were ignored for which there was no place")
+
+
+def test_the_id_with_the_least_robustness_is_reported(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "props.txt").write_text(f"{OF_EACH}p: each g of id: never x > g", encoding="utf-8")
+    (tmp_path / "drive.csv").write_text("time,id,x\n10,1,0.5\n11,2,1.75\n12,1,0.25\n", encoding="utf-8")
+    command = ["run", str(tmp_path / "props.txt"), str(tmp_path / "drive.csv"), "--robustness"]
+    assert main(command) == 0
+    assert "  p: 0.25 at +1 s, of id 2: x > g\n" in capsys.readouterr().out
+    main([*command, "--format", "json"])
+    [found] = json.loads(capsys.readouterr().out)["properties"]
+    assert (found["robustness"]["margin"], found["robustness"]["id"]) == (0.25, 2)

@@ -30,7 +30,7 @@ from ltlc.specification.expressions import Signal
 
 if TYPE_CHECKING:
     from ltlc.monitoring.columns.bands import Bands
-    from ltlc.monitoring.columns.measuring import Band
+    from ltlc.monitoring.columns.curves import Band
 
 NAME = Path("run")
 """What is called a run that is in no file."""
@@ -171,7 +171,7 @@ class LiveRun:
         if not self._is_measured:
             raise UnusableInput((), "nothing is kept for it; call `ltlc.monitor` with `robustness=True`")
         if self._bands is None or self._time is None:
-            from ltlc.monitoring.columns.measuring import Band  # which few ask for
+            from ltlc.monitoring.columns.curves import Band  # which few ask for
 
             return {each.specification.label: Band() for each in self._prepared.compiled}
         return self._bands.now(self._time, self._run is not None)

@@ -9,7 +9,7 @@ from typing import Any
 from ltlc.base.diagnostics import Diagnostic
 from ltlc.base.errors import UnusableInput
 from ltlc.dataclass import dataclass
-from ltlc.monitoring.columns.measuring import Curve
+from ltlc.monitoring.columns.curves import Curve
 from ltlc.monitoring.judging.run import RunReport
 from ltlc.runtime import reports
 from ltlc.runtime.properties import Failure, Moment

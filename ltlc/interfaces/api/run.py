@@ -20,7 +20,7 @@ from ltlc.inputs.recordings.signals import FromTable
 from ltlc.interfaces.api.prepare import Prepared, Text, encoding_of, folders, prepare, read
 from ltlc.interfaces.api.results import Run
 from ltlc.interfaces.api.times import Seconds, limit_of, needs_time
-from ltlc.monitoring.columns.measuring import Curve
+from ltlc.monitoring.columns.curves import Curve
 from ltlc.monitoring.judging.run import Judge, Open, RunReport
 
 Row = Mapping[str, object]

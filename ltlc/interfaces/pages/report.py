@@ -23,7 +23,7 @@ from ltlc.interfaces.pages.machines import machine_picture
 from ltlc.interfaces.pages.maps import Course, courses, map_of
 from ltlc.interfaces.pages.panels import Panel, panels
 from ltlc.interfaces.pages.series import Collector, Series
-from ltlc.monitoring.columns.measuring import Curve
+from ltlc.monitoring.columns.curves import Curve
 from ltlc.monitoring.judging.run import RunReport
 from ltlc.monitoring.judging.violations import only_first, violation_text
 from ltlc.monitoring.later import all_violations

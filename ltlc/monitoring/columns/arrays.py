@@ -87,7 +87,7 @@ def views_of(arrays: Ragged) -> Views:
 
 def held_for(array: Sequence[Value], count: int) -> ByStep:
     """One array at so many steps."""
-    one = Views(_side_by_side(array), np.array([len(array)]), np.zeros(1, np.int64))
+    one = Views(side_by_side(array), np.array([len(array)]), np.zeros(1, np.int64))
     return ByStep(one, np.zeros(count, np.int64))
 
 
@@ -96,7 +96,7 @@ def views_after(before: Sequence[Sequence[Value]], arrays: Views) -> Views:
     if not before:
         return arrays
     elements = [element for array in before for element in array]
-    first = np.array(elements, arrays.elements.dtype) if len(arrays) else _side_by_side(elements)
+    first = np.array(elements, arrays.elements.dtype) if len(arrays) else side_by_side(elements)
     lengths = np.array([len(array) for array in before], np.int64)
     return Views(
         np.concatenate((first, arrays.elements)) if len(arrays) else first,
@@ -105,7 +105,8 @@ def views_after(before: Sequence[Sequence[Value]], arrays: Views) -> Views:
     )
 
 
-def _side_by_side(elements: Sequence[Value]) -> Array:
+def side_by_side(elements: Sequence[Value]) -> Array:
+    """These `elements` in one array."""
     return np.array(elements, object if any(isinstance(each, str) for each in elements) else None)
 
 

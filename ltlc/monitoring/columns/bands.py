@@ -7,7 +7,8 @@ from collections.abc import Mapping, Sequence
 from ltlc.compiler import Compiled
 from ltlc.inputs.recordings.blocks import ROWS, blocks_of
 from ltlc.inputs.recordings.rows import Column, Row
-from ltlc.monitoring.columns.measuring import Band, Measuring
+from ltlc.monitoring.columns.curves import Band
+from ltlc.monitoring.columns.measuring import Measuring
 from ltlc.monitoring.columns.prepared import Prepared
 from ltlc.monitoring.columns.session import ByBlocks
 from ltlc.runtime.rows import ByRows

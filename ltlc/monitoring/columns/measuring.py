@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
-from dataclasses import field
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ltlc.compiler import Compiled
-from ltlc.dataclass import dataclass
 from ltlc.inputs.recordings.blocks import Array, Block, Places
+from ltlc.monitoring.columns.curves import Band, Curve, Run, first_with
+from ltlc.monitoring.columns.each_id import KeptRuns, OfIds
 from ltlc.monitoring.columns.margins import combined, margins_of
 from ltlc.monitoring.columns.opening import of_whole_run, whole_runs
 from ltlc.monitoring.columns.prepared import Prepared
@@ -23,75 +21,39 @@ from ltlc.monitoring.columns.values import not_numbers
 from ltlc.monitoring.columns.views import View, views_of
 from ltlc.runtime.rows import ByRows
 from ltlc.runtime.sampling import Reading, Window
-from ltlc.runtime.session import Session
+from ltlc.runtime.session import Plan, Session
 from ltlc.runtime.tracking import Track
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.encodings import EPISODE
 from ltlc.semantics.properties import After
-from ltlc.semantics.robustness import FALSE, TRUE
-from ltlc.specification.specification import Instances, Slicing
-
-Run = tuple[Timeline, Mapping[str, Array], Mapping[str, Nanoseconds]]
+from ltlc.specification.specification import Instances, PropertySpecification, Slicing
 
 NOTHING = Block(np.empty(0, np.int64), {}, {})
 """No rows."""
-
-PIECE = 1 << 14
-"""So many margins are looked through at a time."""
-
-
-@dataclass(frozen=True, slots=True)
-class Curve:
-    """By how much a property holds on the rest of the run from each of its steps on.
-
-    `times`, in ns, and `margins` have one number for each step, in the order of the run; `margins[0]` is that of the
-    whole run. A margin is in the unit of the values that decide it: positive where the property holds, negative where
-    it is violated, infinite where no comparison of numbers decides it. `decided` has the time and the name of the first
-    comparison with the margin of the whole run; of what is judged from each message on, it is that from the message at
-    `opened_at`. Of a property that cannot be measured there are none, and `reason` says
-    why.
-    """
-
-    times: NDArray[np.int64] = field(default_factory=lambda: np.empty(0, np.int64))
-    margins: NDArray[np.float64] = field(default_factory=lambda: np.empty(0))
-    reason: str = ""
-    decided: tuple[Nanoseconds, str] | None = None
-    opened_at: Nanoseconds | None = None
-
-    @property
-    def whole(self) -> float | None:
-        """That of the whole run; None if it did not begin, or cannot be measured."""
-        return float(self.margins[0]) + 0.0 if len(self.margins) else None  # 0, not -0, however it came about
-
-
-@dataclass(frozen=True, slots=True)
-class Band:
-    """Between which numbers the robustness of a property will be, however the run continues.
-
-    Of a property that cannot be measured nothing is known, and `reason` says why.
-    """
-
-    low: float = FALSE
-    high: float = TRUE
-    reason: str = ""
 
 
 class _Gathered:
     """The margins of the atoms of a property at its steps, in parts."""
 
     def __init__(
-        self, compiled: Compiled, prepared: Prepared, track: Track, stepped: tuple[Track, Window] | None
+        self,
+        judged: PropertySpecification,
+        prepared: Prepared,
+        track: Track,
+        stepped: tuple[Track, Window] | None,
+        reason: str,
     ) -> None:
-        self._of = of = of_whole_run(compiled.specification)
+        """If there is a `reason`, they cannot be gathered."""
+        self._of = of = of_whole_run(judged)
         self._prepared = prepared
         self._slices = track.slices
         self._stepped = stepped
-        self._judged = compiled.specification
-        self._reason = _unmeasured(compiled)
+        self._judged = judged
+        self._reason = reason
         self._times: list[Places] = []
         self._margins: dict[str, list[Array]] = {atom.name: [] for atom in of.atoms}
         self._registers: Registers | None = None
-        if compiled.specification.openings() and not self._reason:
+        if judged.openings() and not self._reason:
             try:
                 self._registers = Registers(of, prepared)
             except UnsupportedError as error:
@@ -144,7 +106,7 @@ class _Gathered:
             return Curve(reason=str(error))
         line, margins, _ = run
         whole = np.require(found, requirements=("C", "W"))
-        decided = _first_with(abs(float(found[0])), margins, line.times)
+        decided = first_with(abs(float(found[0])), margins, line.times)
         decided = decided and (decided[0], self._judged.as_written(decided[1]))
         return Curve(line.times, whole, decided=decided, opened_at=opened_at)
 
@@ -190,25 +152,15 @@ def _joined(parts: Sequence[Array]) -> Array:
     return parts[0] if len(parts) == 1 else np.concatenate(parts)
 
 
-def _first_with(size: float, margins: Mapping[str, Array], times: Places) -> tuple[Nanoseconds, str] | None:
-    """The first of the finite `margins` of this size, on either side of 0."""
-    for start in range(0, len(times) if math.isfinite(size) else 0, PIECE):
-        at = {name: np.flatnonzero(np.abs(each[start : start + PIECE]) == size) for name, each in margins.items()}
-        found = [(int(steps[0]), name) for name, steps in at.items() if len(steps)]
-        if found:
-            step, name = min(found, key=lambda each: each[0])
-            return int(times[start + step]), name
-    return None
-
-
-def _unmeasured(compiled: Compiled) -> str:
+def _unmeasured(compiled: Compiled, plan: Plan) -> str:
     """Why there are no margins of a property; empty if there are."""
     of = compiled.specification
     if compiled.encoding.name != EPISODE.name:
         return f"the encoding `{compiled.encoding.name}`"
-    if isinstance(of.slicing, Slicing):
-        return "`each`: every id has a run of its own"
-    return "values at an opening, from each message on" if of.slicing is not None and of.openings() else ""
+    if isinstance(of.slicing, Slicing) and plan.rate is not None:
+        return "the ticks of each id"
+    each = "of each id" if isinstance(of.slicing, Slicing) else "from each message on"
+    return f"values at an opening, {each}" if of.slicing is not None and of.openings() else ""
 
 
 class Measuring:
@@ -222,12 +174,18 @@ class Measuring:
         self._definitions = {name: each for of in prepared for name, each in of.definitions.items()}
         specifications = [each.specification for each in compiled]
         self._opened = whole_runs(session.plan, specifications, prepared)
+        self._of_ids = KeptRuns(session.plan)
         stepped = [*session.stepped, *(() if self._opened is None else self._opened.session.stepped)]
         seen = {track.property.label: (track, window) for track, window in stepped}
-        self._gathered = {
-            track.property.label: _Gathered(of, needed, track, seen.get(track.property.label))
-            for track, of, needed in zip(session.tracks, compiled, prepared, strict=True)
-        }
+        self._gathered: dict[str, _Gathered | OfIds] = {}
+        for track, of, needed in zip(session.tracks, compiled, prepared, strict=True):
+            label = track.property.label
+            reason, slices = _unmeasured(of, session.plan), self._of_ids.of(label)
+            self._gathered[label] = (
+                _Gathered(of.specification, needed, track, seen.get(label), reason)
+                if slices is None
+                else OfIds(of.specification, needed, slices, reason)
+            )
 
     def take(self, block: Block) -> None:
         """Gather those of the rows of `block`, which the session takes next."""
@@ -236,6 +194,7 @@ class Measuring:
             if self._opened is not None:
                 self._take(self._opened.session, block, int(block.times[-1]))
                 self._opened.take(block)
+            self._of_ids.take(block)
             self._began = int(block.times[0]) if self._began is None else self._began
 
     def finish(self, end: Nanoseconds) -> None:
@@ -252,13 +211,19 @@ class Measuring:
             views = views_of(session, rows, before)
         except UnsupportedError as error:
             for track, _ in session.stepped:
-                self._gathered[track.property.label].refuse(str(error))
+                self._of(track).refuse(str(error))
             return
         for view in views:
             view.derive(session, self._definitions)
             for track in view.tracks:
-                self._gathered[track.property.label].take(view, session)
+                self._of(track).take(view, session)
             view.columns.release()
+
+    def _of(self, track: Track) -> _Gathered:
+        """What is gathered of a property that is judged along one run."""
+        found = self._gathered[track.property.label]
+        assert isinstance(found, _Gathered)
+        return found
 
     def curves(self, end: Nanoseconds | None) -> dict[str, Curve]:
         """Those of all properties by label, in a run up to `end`; None if nothing has come."""

@@ -66,7 +66,7 @@ def _computed(
 ) -> Column:
     match expression:
         case p.Held() | p.Slope() | p.News():
-            return _as_doubles(steps.column(wanted_of(expression)))
+            return as_doubles(steps.column(wanted_of(expression)))
         case p.Apply():
             return _applied(expression, steps)
         case p.Count():
@@ -77,7 +77,7 @@ def _computed(
             assert_never(expression)
 
 
-def _as_doubles(column: Array) -> Array:
+def as_doubles(column: Array) -> Array:
     """Integers as doubles, which compare as they do, unless they are large."""
     if column.dtype.kind not in "iu":
         return column
@@ -98,10 +98,10 @@ def _applied(applied: p.Apply, steps: Steps) -> Column:
     at = arrays_at(last, steps)
     if others:
         views = at.arrays.taken(at.numbers)
-        beside: Array = row(*(_value(other, steps) for other in others), _as_doubles(views.packed()), views.lengths)
+        beside: Array = row(*(_value(other, steps) for other in others), as_doubles(views.packed()), views.lengths)
         return beside
     parts = (at.arrays[part] for part in pieces(at.arrays.lengths))
-    of_each: Array = np.concatenate([np.empty(0), *(row(_as_doubles(part.packed()), part.lengths) for part in parts)])
+    of_each: Array = np.concatenate([np.empty(0), *(row(as_doubles(part.packed()), part.lengths) for part in parts)])
     return of_each.take(at.numbers)
 
 
@@ -186,7 +186,7 @@ def _of_elements(
             for array in of_list:
                 view = Views(views[array].elements, rows[number], views[array].starts[part])
                 found = view.at(indexes[number], sizes[part]) if indexes else view.packed()
-                known[p.Each(array)] = _as_doubles(found)
+                known[p.Each(array)] = as_doubles(found)
         known |= {single: column[part].repeat(sizes[part]) for single, column in columns.items()}
         return of(Given(steps.columns, steps.base, steps.first, known, count=total), sizes[part])
 

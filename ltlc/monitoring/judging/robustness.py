@@ -6,8 +6,9 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from ltlc.monitoring.columns.measuring import Curve
+from ltlc.monitoring.columns.curves import Curve
 from ltlc.runtime.session import Session
+from ltlc.runtime.slice_reports import id_text
 from ltlc.runtime.times import seconds
 
 NO_NUMBERS = "no comparison of numbers decides it"
@@ -25,6 +26,8 @@ def robustness_report(session: Session, curve: Curve) -> dict[str, Any]:
         found |= {"comparison": comparison, "time": seconds(time), "time_ns": time, **offset}
     if curve.opened_at is not None:
         found["opened_at"] = seconds(curve.opened_at)
+    if curve.id is not None:
+        found["id"] = curve.id
     return found
 
 
@@ -41,7 +44,9 @@ def robustness_sentence(session: Session, curve: Curve) -> str:
     if reason := _reason(curve):
         return f"none: {reason}"
     margin = f"{curve.whole:.6g}"
-    of = "" if curve.opened_at is None else f" from the message at {session.scale.text(curve.opened_at)} on"
+    of = f" of id {id_text(curve.id)}" if curve.id is not None else ""
+    if curve.opened_at is not None:
+        of = f" from the message at {session.scale.text(curve.opened_at)} on"
     if curve.decided is None:
         return margin + of
     time, comparison = curve.decided

@@ -43,7 +43,8 @@ from ltlc.specification.specification import PropertySpecification, Specificatio
 
 if TYPE_CHECKING:
     from ltlc.assurance.evidence.document import Document
-    from ltlc.monitoring.columns.measuring import Band, Curve, Measuring
+    from ltlc.monitoring.columns.curves import Band, Curve
+    from ltlc.monitoring.columns.measuring import Measuring
     from ltlc.monitoring.guarding.recording import GuardedRecording, Guarding
     from ltlc.monitoring.guarding.report import GuardReport
     from ltlc.monitoring.judging.cutting import Cut, Cutting

@@ -28,7 +28,7 @@ from ltlc.specification.expressions import Signal
 from ltlc.specification.specification import Specification
 
 if TYPE_CHECKING:
-    from ltlc.monitoring.columns.measuring import Curve
+    from ltlc.monitoring.columns.curves import Curve
 
 MOST_KEPT = 256 * 2**20
 """Bytes of a recording that are kept in memory; of a longer one, each look reads all."""
