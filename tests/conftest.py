@@ -154,6 +154,15 @@ def few_children() -> Iterator[None]:
         yield
 
 
+@pytest.fixture(autouse=True)
+def own_handlers() -> Iterator[None]:
+    """What handles signals here is what did before: a node's program, run in this process, takes them over."""
+    before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
+    yield
+    for number, handler in before.items():
+        signal.signal(number, handler)
+
+
 @pytest.fixture
 def quickly() -> Iterator[None]:
     """What is built is not analysed, cross-checked or replayed, for tests that are about something else."""
